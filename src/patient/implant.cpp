@@ -66,6 +66,18 @@ std::vector<std::string> match_warnings(const FoundImplant& found) {
   return warnings;
 }
 
+/// The D90 of the target while the gland swells; nothing where it does not swell or where there is no target.
+Result<std::optional<DoseCourse>> course_of_oedema(const ImplantPlan& of, const DosePlan& delivered) {
+  const auto& structures = of.structures.structures;
+  const auto target = std::find_if(structures.begin(), structures.end(),
+                                   [](const DoseStructure& structure) { return structure.region == "prostate"; });
+  if (!of.options.swelling.is_any() || delivered.implant != Implant::permanent || target == structures.end())
+    return std::optional<DoseCourse>();
+  Result<DoseCourse> course = d90_over_time(delivered, of.source, target->samples, of.options);
+  if (!course) return course.error();
+  return std::optional<DoseCourse>(*std::move(course));
+}
+
 /// Only the implant that the results are about keeps the steps of its needles; other choices would multiply the memory.
 ImplantHistory without_records(ImplantHistory history) {
   for (std::vector<NeedleHistory>* needles : {&history.needles, &history.stabilising}) {
@@ -132,6 +144,9 @@ Result<ImplantOutcome> implant(const Scenario& scenario, const std::string& wher
   Result<DoseEvaluation> dose = dose_of(outcome.history);
   if (!dose) return dose.error();
   outcome.delivered = *std::move(dose);
+  Result<std::optional<DoseCourse>> oedema = course_of_oedema(of, outcome.delivered.plan);
+  if (!oedema) return oedema.error();
+  outcome.oedema = *std::move(oedema);
   for (const TissuePreset preset : {TissuePreset::firm, TissuePreset::soft}) {
     if (!settings.span) break;
     Scenario other = scenario;

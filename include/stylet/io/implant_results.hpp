@@ -3,6 +3,7 @@
 
 #include "stylet/core/progress.hpp"
 #include "stylet/dose/dose_evaluation.hpp"
+#include "stylet/dose/dose_over_time.hpp"
 #include "stylet/implant/found_errors.hpp"
 
 #include <filesystem>
@@ -34,6 +35,7 @@ struct ImplantOutcome {
   ImplantHistory history;
   DoseEvaluation planned;            ///< dose of the plan
   DoseEvaluation delivered;          ///< dose of the seeds where they have come to rest
+  std::optional<DoseCourse> oedema;  ///< D90 of the target over time, where the gland swells
   double seed_length_mm = 0.0;
   std::optional<OtherImplant> before;  ///< without compensation, where the needles were aimed to make up for the errors
   std::vector<OtherImplant> spans;     ///< with firmer and softer tissue, where they were asked for

@@ -58,6 +58,21 @@ void invent_record(NeedleHistory& needle, std::size_t group) {
                           invented_shape(needle, "seed 3 dropped", 3.0)};
 }
 
+/// The D90 of a gland that swells, without a computation.
+DoseCourse invented_course() {
+  DoseCourse course{.moments = {},
+                    .swelling = {.centre_mm = Vec3::Zero(), .at_start = Vec3::Constant(0.145), .half_life_days = 9.3},
+                    .half_life_days = 59.4,
+                    .samples = 1000};
+  for (int k = 0; k <= 16; ++k) {
+    const double share = k / 16.0;
+    const double taken = 14.0 * (1.0 - std::pow(1.0 - share, 7.4));
+    course.moments.push_back(
+        {k == 16 ? INFINITY : -59.4 * std::log2(1.0 - share), share, 150.0 * share - taken, 150.0 * share});
+  }
+  return course;
+}
+
 SeedHistory seed_of(const PlannedSource& source, std::size_t number, std::size_t needle) {
   SeedHistory seed;
   seed.number = number;
@@ -111,6 +126,7 @@ ImplantOutcome synthetic_implant(double grid_mm, double step_mm) {
   for (std::size_t k = 0; k < sources.size(); ++k)
     history.seeds.push_back(seed_of(sources[k], k, needle_of(history, sources[k])));
   history.seeds.back().lost = true;
+  outcome.oedema = invented_course();
   outcome.mesh = {.nodes = {Vec3(0, 0, 0), Vec3(10, 0, 0), Vec3(0, 10, 0), Vec3(0, 0, 10)},
                   .tets = {{0, 1, 2, 3}},
                   .tet_region = {0},

@@ -7,6 +7,7 @@
 #include "results/implant/implant_page.hpp"
 #include "results/implant/implant_tables.hpp"
 #include "results/implant/implant_words.hpp"
+#include "results/implant/oedema_section.hpp"
 #include "synthetic_implant.hpp"
 
 #include <fmt/format.h>
@@ -113,6 +114,24 @@ TEST(ImplantPage, gives_the_scripts_planned_histograms_at_the_doses_of_the_deliv
   EXPECT_EQ(data["thirds"].size(), 3U);
 }
 
+TEST(ImplantPage, says_what_the_swelling_takes_away_and_when_only_where_the_gland_swells) {
+  const std::string page = page_of(outcome());
+  const std::string section = between(page, "<section aria-labelledby=\"oedema\">", "</section>");
+  EXPECT_EQ(count(section, "takes away 14.0 Gy (9.3&nbsp;%), half of it within the first 8 days"), 1U) << section;
+  EXPECT_EQ(count(section, "with swelling: 136 Gy in the end"), 1U);
+  EXPECT_EQ(count(section, "without: 150 Gy in the end"), 1U);
+  const auto json = nlohmann::json::parse(implant_json(outcome()))["implant"]["oedema"];
+  ASSERT_EQ(json["moments"].size(), 17U);
+  EXPECT_NEAR(json["moments"][0]["swelling_percent"][2].get<double>(), 14.5, 1e-12);
+  EXPECT_TRUE(json["moments"][16]["days"].is_null());
+  EXPECT_DOUBLE_EQ(json["moments"][16]["D90_Gy"].get<double>(), 136.0);
+  EXPECT_DOUBLE_EQ(json["D90_taken_away_Gy"].get<double>(), 14.0);
+  ImplantOutcome without = outcome();
+  without.oedema.reset();
+  EXPECT_EQ(count(page_of(without), "Dose while the gland swells"), 0U);
+  EXPECT_TRUE(nlohmann::json::parse(implant_json(without))["implant"]["oedema"].is_null());
+}
+
 TEST(ImplantPage, gives_the_scripts_the_shafts_of_needles_in_place_together_and_says_so) {
   const auto data_of = [](const std::string& page) {
     return nlohmann::json::parse(between(page, "id=\"implant-data\">", "</script>"));
@@ -133,6 +152,20 @@ TEST(ImplantPage, gives_the_scripts_the_shafts_of_needles_in_place_together_and_
     std::erase_if(of.record.shapes, [](const NeedleShape& shape) { return shape.when == kAllInPlace; });
   EXPECT_TRUE(data_of(page_of(alone))["needles"].empty());
   EXPECT_EQ(count(page_of(alone), "Shafts are those of needles"), 0U);
+}
+
+TEST(OedemaPicture, has_a_curve_for_each_direction_where_they_differ_and_bears_shrinking) {
+  DoseCourse course = *outcome().oedema;
+  EXPECT_EQ(count(results::oedema_picture(course), "<path d=\"M62.0 "), 4U);
+  course.swelling.at_start = Vec3(0.1, 0.2, -0.05);
+  const std::string svg = results::oedema_picture(course);
+  EXPECT_EQ(count(svg, "<path d=\"M62.0 "), 6U);
+  EXPECT_EQ(count(svg, "inferior to superior"), 1U);
+  EXPECT_EQ(count(svg, "nan"), 0U);
+  for (DoseMoment& moment : course.moments) std::swap(moment.d90_Gy, moment.d90_without_swelling_Gy);
+  EXPECT_EQ(count(results::oedema_picture(course), "Added to D90"), 1U);
+  EXPECT_NE(results::oedema_words(course).find("adds 14.0 Gy"), std::string::npos);
+  EXPECT_NE(results::oedema_words(course).find("5 % narrower from inferior to superior"), std::string::npos);
 }
 
 TEST(ImplantPage, can_be_made_when_every_seed_is_lost) {

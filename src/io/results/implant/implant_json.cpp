@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "implant/found_json.hpp"
 #include "implant/json_parts.hpp"
+#include "implant/oedema_section.hpp"
 #include "stylet/core/version.hpp"
 #include "stylet/io/dose_results.hpp"
 #include "stylet/io/implant_results.hpp"
@@ -115,6 +116,7 @@ std::string implant_json(const ImplantOutcome& outcome) {
         {"found_dvh", outcome.found ? found["dvh"] : OrderedJson(nullptr)},
         {"goals",
          goals_json(planned["goals"], delivered["goals"], outcome.found ? found["goals"] : OrderedJson(nullptr))},
+        {"oedema", outcome.oedema ? results::oedema_json(*outcome.oedema) : OrderedJson(nullptr)},
         {"found", outcome.found ? results::found_json(history, *outcome.found) : OrderedJson(nullptr)},
         {"before_compensation", outcome.before ? other_json(*outcome.before, outcome.found) : OrderedJson(nullptr)},
         {"spans", spans},

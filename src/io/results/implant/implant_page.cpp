@@ -15,6 +15,7 @@
 #include "implant/implant_data.hpp"
 #include "implant/implant_tables.hpp"
 #include "implant/implant_words.hpp"
+#include "implant/oedema_section.hpp"
 #include "implant/procedure_facts.hpp"
 #include "report/assets.hpp"
 #include "report/html_parts.hpp"
@@ -84,6 +85,7 @@ Result<std::string> implant_page(const ImplantOutcome& outcome) {
       {"goals", goal_table(doses)},
       {"dvh_picture", dvh_picture(outcome.delivered.structures, dvh.delivered, colours, &dvh.planned, found)},
       {"figures", dvh_figures(doses, colours)},
+      {"oedema", oedema_section(outcome.oedema ? &*outcome.oedema : nullptr)},
       {"errors", error_table(history)},
       {"cause_picture", cause_picture(history)},
       {"cause_meanings", cause_meanings(history)},

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "implant/oedema_section.hpp"
+
+#include "fixed_number.hpp"
+#include "implant/implant_words.hpp"
+#include "implant/json_parts.hpp"
+#include "report/text.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace stylet::results {
+namespace {
+
+bool swells_alike(const Swelling& swelling) { return (swelling.at_start.array() == swelling.at_start.x()).all(); }
+
+/// "14.5 % wider in each direction", or the three directions by name.
+std::string width_in_words(const Swelling& swelling) {
+  const auto wider = [](double part) {
+    return fmt::format("{:g} % {}", std::abs(100.0 * part), part < 0.0 ? "narrower" : "wider");
+  };
+  const Vec3& s = swelling.at_start;
+  if (swells_alike(swelling)) return wider(s.x()) + " in each direction";
+  return fmt::format("{} from right to left, {} from anterior to posterior and {} from inferior to superior",
+                     wider(s.x()), wider(s.y()), wider(s.z()));
+}
+
+}  // namespace
+
+std::string oedema_words(const DoseCourse& course) {
+  const DoseMoment& last = course.moments.back();
+  const double taken = last.taken_away_Gy();
+  std::string text = fmt::format(
+      "On the day of the implant the gland is {}; what is left of this halves every {:g} days. Seeds and tissue move "
+      "with it, so that the distances between them change, and with them the dose rate. Until the seeds have decayed, "
+      "the target’s D90 is {} Gy; without swelling it would be {} Gy. ",
+      width_in_words(course.swelling), course.swelling.half_life_days, fixed(last.d90_Gy, 0),
+      fixed(last.d90_without_swelling_Gy, 0));
+  if (!(std::abs(taken) >= 0.05)) return text + "The swelling changes D90 by less than 0.1 Gy.";
+  const double half = course.days_until_half_is_taken();
+  return text + fmt::format(
+                    "The swelling {} {} Gy ({} %), half of it within the first {} days, when the seeds have "
+                    "given {} % of their dose.",
+                    taken > 0.0 ? "takes away" : "adds", fixed(std::abs(taken), 1),
+                    fixed(100.0 * std::abs(taken) / last.d90_without_swelling_Gy, 1), fixed(half, 0),
+                    fixed(100.0 * course.at(half).share, 0));
+}
+
+std::string oedema_section(const DoseCourse* course) {
+  if (course == nullptr) return {};
+  return fmt::format(
+      "<section aria-labelledby=\"oedema\"><h2 id=\"oedema\">Dose while the gland swells</h2><p>{}</p><p>{}</p><div "
+      "class=\"oedema\">{}</div></section>",
+      html_prose(oedema_words(*course)),
+      "The pictures share the days since the implant. D90 is that of the dose accumulated until this day, of the seeds "
+      "where they rest.",
+      oedema_picture(*course));
+}
+
+nlohmann::ordered_json oedema_json(const DoseCourse& course) {
+  const auto or_null = [](double value) { return std::isfinite(value) ? OrderedJson(value) : OrderedJson(nullptr); };
+  OrderedJson moments = OrderedJson::array();
+  for (const DoseMoment& m : course.moments) {
+    moments.push_back({{"days", or_null(m.days)},
+                       {"swelling_percent", list_of(100.0 * (course.swelling.factors(m.days) - Vec3::Ones()))},
+                       {"D90_Gy", m.d90_Gy},
+                       {"D90_without_swelling_Gy", m.d90_without_swelling_Gy}});
+  }
+  return {{"samples", course.samples},
+          {"D90_taken_away_Gy", course.moments.back().taken_away_Gy()},
+          {"days_until_half_is_taken", or_null(course.days_until_half_is_taken())},
+          {"moments", moments}};
+}
+
+}  // namespace stylet::results

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/dose/dose_over_time.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <string>
+
+/// What the swelling of the gland does to the dose of the target in the course of time.
+namespace stylet::results {
+
+/// The section of the page, as HTML: sentences, and over the days since the implant the width of the gland, the
+/// accumulated D90 with and without swelling, and what the swelling has taken away. @param course nullptr: there is no
+/// swelling, and no section
+std::string oedema_section(const DoseCourse* course);
+
+/// How much of the target's D90 the swelling takes away, and when, in sentences.
+std::string oedema_words(const DoseCourse& course);
+
+/// The picture of the section, as SVG.
+std::string oedema_picture(const DoseCourse& course);
+
+/// The key `oedema` of summary.json (docs/results.md).
+nlohmann::ordered_json oedema_json(const DoseCourse& course);
+
+}  // namespace stylet::results
