@@ -23,15 +23,22 @@ struct ImplantArguments {
   std::string found;
 };
 
+bool is_temporary(const ImplantOutcome& outcome) { return implant_of(outcome.history.seeds) == Implant::temporary; }
+
 std::string errors_text(const ImplantOutcome& outcome) {
-  Table table({"seeds", "number", "mean [mm]", "95 % [mm]", "left [mm]", "posterior [mm]", "superior [mm]"});
+  Table table({is_temporary(outcome) ? "dwell positions" : "seeds", "number", "mean [mm]", "95 % [mm]", "left [mm]",
+               "posterior [mm]", "superior [mm]"});
   const auto row = [&](const std::string& name, const SeedErrors& e) {
     const auto axis = [](const SeedErrors::Axis& a) { return fmt::format("{:.2f} ± {:.2f}", a.mean_mm, a.sd_mm); };
     table.row({name, fmt::format("{}", e.seeds), fmt::format("{:.2f}", e.mean_mm), fmt::format("{:.2f}", e.p95_mm),
                axis(e.axes[0]), axis(e.axes[1]), axis(e.axes[2])});
   };
   if (outcome.before) row(outcome.before->name, seed_errors(outcome.before->history.seeds));
-  row(outcome.before ? "after compensation" : "all", seed_errors(outcome.history.seeds));
+  if (outcome.at_planning) row(outcome.at_planning->name, seed_errors(outcome.at_planning->history.seeds));
+  row(outcome.before        ? "after compensation"
+      : outcome.at_planning ? "at delivery"
+                            : "all",
+      seed_errors(outcome.history.seeds));
   for (const PartErrors& third : errors_by_third(outcome.history)) row(third.name, third.errors);
   for (const OtherImplant& other : outcome.spans) row(other.name, seed_errors(other.history.seeds));
   return table.text();
@@ -53,6 +60,7 @@ std::string value_of(const JudgedGoal& goal) { return goal.value ? fmt::format("
 std::string dose_text(const ImplantOutcome& outcome) {
   std::vector<std::string> head{"goal", "bound", "planned"};
   std::vector<const OtherImplant*> others;
+  if (outcome.at_planning) others.push_back(&*outcome.at_planning);
   if (outcome.before) others.push_back(&*outcome.before);
   for (const OtherImplant& other : outcome.spans) others.push_back(&other);
   for (const OtherImplant* other : others) head.push_back(other->name);
@@ -73,6 +81,30 @@ std::string dose_text(const ImplantOutcome& outcome) {
     judged(delivered);
     if (outcome.found) judged(outcome.found->dose.goals[k]);
     table.row(row);
+  }
+  return table.text();
+}
+
+/// Figures of the structures that decide about a temporary implant, for which the program has no goals of its own.
+std::string target_text(const ImplantOutcome& outcome) {
+  Table table({"structure", "figure", "planned", "at planning", "delivered"});
+  for (std::size_t k = 0; k < outcome.delivered.structures.size(); ++k) {
+    const StructureDose& structure = outcome.delivered.structures[k];
+    const bool target = structure.region == "prostate";
+    if (!target && structure.region != "urethra" && structure.region != "rectum" && structure.region != "bladder")
+      continue;
+    const auto row = [&](const std::string& figure, const auto& of) {
+      table.row(
+          {structure.name, figure, fmt::format("{:.2f}", of(outcome.planned.structures[k].dvh)),
+           outcome.at_planning ? fmt::format("{:.2f}", of(outcome.at_planning->delivered.structures[k].dvh)) : "-",
+           fmt::format("{:.2f}", of(structure.dvh))});
+    };
+    if (target) row("D90 [Gy]", [](const DoseVolume& dvh) { return dvh.dose_of_percent(90.0); });
+    if (const double prescription = outcome.delivered.prescription_Gy; target && prescription > 0.0)
+      row("V100 [%]", [&](const DoseVolume& dvh) { return dvh.percent_above(prescription); });
+    if (structure.region == "urethra") row("D10 [Gy]", [](const DoseVolume& dvh) { return dvh.dose_of_percent(10.0); });
+    if (structure.region == "rectum" || structure.region == "bladder")
+      row("D2cc [Gy]", [](const DoseVolume& dvh) { return dvh.dose_of_volume(2.0); });
   }
   return table.text();
 }
@@ -162,14 +194,19 @@ Result<> run_implant(const ImplantArguments& arguments, Console& console) {
     seconds += needle.seconds;
     steps += needle.steps;
   }
-  console.say(fmt::format("{}: {} needles, {} seeds, {} nodes; {} steps in {:.1f} s of processor time", scenario->name,
-                          outcome->history.needles.size(), outcome->history.seeds.size(), outcome->history.nodes, steps,
-                          seconds));
-  console.say("Distance of the seeds from where they were planned (mean ± standard deviation along the axes)\n" +
-              errors_text(*outcome));
+  const bool temporary = is_temporary(*outcome);
+  console.say(fmt::format("{}: {} {}, {} {}, {} nodes; {} steps in {:.1f} s of processor time", scenario->name,
+                          outcome->history.needles.size(), temporary ? "catheters" : "needles",
+                          outcome->history.seeds.size(), temporary ? "dwell positions" : "seeds",
+                          outcome->history.nodes, steps, seconds));
+  console.say(
+      fmt::format("Distance of the {} from where they were planned (mean ± standard deviation along the axes)\n",
+                  temporary ? "dwell positions" : "seeds") +
+      errors_text(*outcome));
   console.say("Why\n" + causes_text(*outcome));
   if (outcome->found) say_found(outcome->history, *outcome->found, console);
-  console.say(dose_text(*outcome));
+  if (!outcome->delivered.goals.empty()) console.say(dose_text(*outcome));
+  if (temporary) console.say("Dose\n" + target_text(*outcome));
   console.say(fmt::format("Report: {}", (folder / "report.html").string()));
   const Json json = Json::parse(implant_json(*outcome));
   return console.write_json(json);
@@ -179,8 +216,10 @@ Result<> run_implant(const ImplantArguments& arguments, Console& console) {
 
 Command add_implant_command(CLI::App& program) {
   auto arguments = std::make_shared<ImplantArguments>();
-  CLI::App* app = program.add_subcommand(
-      "implant", "Implant the seeds of a plan: where they come to rest, why, and the dose that they give");
+  CLI::App* app = program.add_subcommand("implant",
+                                         "Implant the seeds of a plan, or the catheters of an HDR plan: where seeds "
+                                         "come to rest or dwell positions move, why, "
+                                         "and the dose that they give");
   app->add_option("SCENARIO", arguments->scenario,
                   "Scenario file with a plan (TOML; stylet insert --print-schema lists its keys)")
       ->type_name("SCENARIO.toml")

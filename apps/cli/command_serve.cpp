@@ -50,6 +50,10 @@ Result<serve::LoadedCase> load_implant(const fs::path& file, const std::vector<s
   if (!scenario) return scenario.error();
   Result<ImplantPlan> plan = read_implant_plan(*scenario, file.string(), progress);
   if (!plan) return plan.error();
+  if (plan->plan.implant == Implant::temporary) {
+    return input_error(plan->plan.file, "the plan is a temporary implant, and the live page drops seeds",
+                       "Carry it out with stylet implant, or give a plan of permanent seeds");
+  }
   auto prepared = prepare_needle_of_file(file.string(), settings, plan->needles.front(), progress, &cache);
   if (!prepared) return prepared.error();
   serve::LoadedCase loaded{prepared->model, prepared->notes};

@@ -31,6 +31,7 @@ constexpr double kSameRow_mm = 1.0;
 using Together = std::vector<std::size_t>;
 
 std::vector<Together> groups_of(const std::vector<NeedleLoad>& needles, NeedlesTogether together) {
+  if (!needles.empty() && needles.front().implant == Implant::temporary) together = NeedlesTogether::all;
   std::vector<Together> groups;
   for (std::size_t k = 0; k < needles.size(); ++k) {
     const auto with_this = std::find_if(groups.begin(), groups.end(), [&](const Together& group) {
@@ -80,13 +81,30 @@ const char* to_string(SeedCause cause) {
       return "release";
     case SeedCause::aim:
       return "aim";
+    case SeedCause::wait:
+      return "planning to delivery";
   }
   return "";
+}
+
+Implant implant_of(std::span<const SeedHistory> seeds) {
+  const bool dwells =
+      std::any_of(seeds.begin(), seeds.end(), [](const SeedHistory& seed) { return seed.at_planning.has_value(); });
+  return dwells ? Implant::temporary : Implant::permanent;
 }
 
 Result<ImplantHistory> simulate_implant(const Scenario& scenario, const TetMesh& mesh,
                                         const std::vector<NeedleLoad>& needles, double seed_length_mm,
                                         const std::string& where, const Progress& progress) {
+  const bool catheters = !needles.empty() && needles.front().implant == Implant::temporary;
+  if (catheters && (scenario.coupling.solver != CouplingSettings::Solver::coupled ||
+                    scenario.coupling.engine != CouplingSettings::Engine::condensed)) {
+    return input_error(where,
+                       fmt::format("the catheters of a temporary implant stay in the tissue together, and "
+                                   "coupling.solver = \"{}\" with coupling.engine = \"{}\" holds one needle only",
+                                   word(scenario.coupling.solver), word(scenario.coupling.engine)),
+                       "Leave coupling.solver and coupling.engine out");
+  }
   const Topology topology(mesh);
   const Locator locator(mesh, topology);
   const Result<std::vector<NeedleLoad>> staying = stabilising_needles(scenario, mesh, needles);
@@ -122,7 +140,9 @@ Result<ImplantHistory> simulate_implant(const Scenario& scenario, const TetMesh&
     for (std::size_t g = next++; g < groups.size() && !failed; g = next++) {
       if (std::this_thread::get_id() == caller) {
         const std::size_t first = groups[g].front();
-        report(progress, fmt::format("needle {} of {}, {}", first + 1, needles.size(), needles[first].name),
+        report(progress,
+               catheters ? fmt::format("{} catheters, which stay together", needles.size())
+                         : fmt::format("needle {} of {}, {}", first + 1, needles.size(), needles[first].name),
                static_cast<double>(finished) / static_cast<double>(needles.size()));
       }
       done[g] = simulate_group(stays, together[g], scenario, mesh, seed_length_mm, targets, where);
@@ -143,6 +163,8 @@ Result<ImplantHistory> simulate_implant(const Scenario& scenario, const TetMesh&
       history.warnings = outcome.warnings;
       history.stabilising = std::move(outcome.staying);
     }
+    history.gland_at_planning_mm = outcome.gland_at_planning_mm;
+    history.gland_at_delivery_mm = outcome.gland_at_delivery_mm;
     for (std::size_t n = 0; n < groups[g].size(); ++n) {
       const std::size_t k = groups[g][n];
       NeedleOutcome& one = outcome.needles[n];

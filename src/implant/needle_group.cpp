@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "needle_group.hpp"
 
+#include "dwell_positions.hpp"
 #include "needle_motion.hpp"
 #include "needle_recorder.hpp"
 #include "seed_watch.hpp"
@@ -14,6 +15,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <ctime>
 #include <deque>
 #include <limits>
@@ -41,7 +43,10 @@ class NeedleOnItsWay {
         entry_(planned.plan.entry_mm->data()),
         motion_(plan_needle_motion(load_, entry_, scenario, seed_length_mm)),
         steps_(planned_steps(model, motion_.insertion)),
+        first_wait_s_(1e-3 * scenario.run.dt_ms),
+        seed_length_mm_(seed_length_mm),
         seeds_(load_, motion_, scenario, seed_length_mm),
+        dwells_(seeds_.result()),
         recorder_(steps_.count) {
     out_.needle.name = load_.name;
     out_.needle.entry_mm = entry_;
@@ -65,16 +70,27 @@ class NeedleOnItsWay {
   void finish(Simulation& simulation, TargetMotion* gland) {
     go_on(simulation, gland, std::numeric_limits<double>::infinity());
   }
+  /// Waits with the base at rest, in steps that grow (waiting_steps_s()).
+  void wait(Simulation& simulation, TargetMotion* gland, double seconds);
+  /// Looks where the dwell positions are now, of this needle at rest or in the hand.
+  /// @param number of this needle in the simulation
+  void see_dwells(Simulation& simulation, int number, DwellLook look) {
+    see_dwell_positions(load_, simulation, number, look, seed_length_mm_, dwells_);
+  }
   NeedleOutcome outcome(bool has_gland);
 
  private:
   void go_on(Simulation& simulation, TargetMotion* gland, double until_s);
+  void take_step(Simulation& simulation, TargetMotion* gland, const Pose& base, double dt);
 
   const NeedleLoad& load_;
   Vec3 entry_;
   NeedleMotion motion_;
   BaseSteps steps_;
+  double first_wait_s_;    ///< [s] the first of the steps that grow
+  double seed_length_mm_;  ///< of a seed, or of the source of a temporary implant
   SeedWatch seeds_;
+  std::vector<SeedHistory> dwells_;  ///< of a catheter
   NeedleRecorder recorder_;
   UnbrokenSurface unbroken_;
   NeedleOutcome out_;
@@ -84,31 +100,40 @@ class NeedleOnItsWay {
 };
 
 void NeedleOnItsWay::go_on(Simulation& simulation, TargetMotion* gland, double until_s) {
-  NeedleHistory& needle = out_.needle;
   while (taken_ < steps_.count && time_s_ < until_s) {
-    ++taken_;
-    simulation.prepare();
-    const double dt = steps_.dt_s(taken_);
-    const double before = thread_cpu_s();
-    const Step& step = simulation.step(steps_.base(taken_), dt);
-    const double seconds = thread_cpu_s() - before;
-    needle.seconds += seconds;
-    time_s_ += dt;
-    ++needle.steps;
-    if ((step.flags & Step::kDistrusted) != 0) ++without_balance_;
-    needle.peak_force_N = std::max(needle.peak_force_N, std::abs(step.force_axial_N));
-    if (step.tip_state != TipState::air) {
-      const Vec3 off = step.tip_mm - entry_;
-      needle.deflection_mm = std::max(needle.deflection_mm, (off - load_.direction * load_.direction.dot(off)).norm());
-    }
-    seeds_.add(simulation, time_s_);
-    recorder_.add(simulation, seeds_, seconds);
-    unbroken_.add(simulation);
-    for (const Event& event : simulation.new_events()) needle.events.push_back(event);
-    if (gland != nullptr && taken_ % kGlandEvery == 0) {
-      const Vec3 shift = gland->now(simulation.insertion()).motion.shift_mm;
-      if (shift.norm() > needle.gland_shift_mm.norm()) needle.gland_shift_mm = shift;
-    }
+    const long next = taken_ + 1;
+    take_step(simulation, gland, steps_.base(next), steps_.dt_s(next));
+  }
+}
+
+void NeedleOnItsWay::wait(Simulation& simulation, TargetMotion* gland, double seconds) {
+  const Pose base = simulation.last_step().base;
+  for (const double dt : waiting_steps_s(seconds, first_wait_s_)) take_step(simulation, gland, base, dt);
+}
+
+void NeedleOnItsWay::take_step(Simulation& simulation, TargetMotion* gland, const Pose& base, double dt) {
+  NeedleHistory& needle = out_.needle;
+  ++taken_;
+  simulation.prepare();
+  const double before = thread_cpu_s();
+  const Step& step = simulation.step(base, dt);
+  const double seconds = thread_cpu_s() - before;
+  needle.seconds += seconds;
+  time_s_ += dt;
+  ++needle.steps;
+  if ((step.flags & Step::kDistrusted) != 0) ++without_balance_;
+  needle.peak_force_N = std::max(needle.peak_force_N, std::abs(step.force_axial_N));
+  if (step.tip_state != TipState::air) {
+    const Vec3 off = step.tip_mm - entry_;
+    needle.deflection_mm = std::max(needle.deflection_mm, (off - load_.direction * load_.direction.dot(off)).norm());
+  }
+  seeds_.add(simulation, time_s_);
+  recorder_.add(simulation, seeds_, seconds);
+  unbroken_.add(simulation);
+  for (const Event& event : simulation.new_events()) needle.events.push_back(event);
+  if (gland != nullptr && taken_ % kGlandEvery == 0) {
+    const Vec3 shift = gland->now(simulation.insertion()).motion.shift_mm;
+    if (shift.norm() > needle.gland_shift_mm.norm()) needle.gland_shift_mm = shift;
   }
 }
 
@@ -117,9 +142,10 @@ NeedleOutcome NeedleOnItsWay::outcome(bool has_gland) {
   out.needle.record = recorder_.take();
   NeedleHistory& needle = out.needle;
   if (!has_gland) needle.gland_shift_mm.setConstant(std::numeric_limits<double>::quiet_NaN());
-  out.seeds = seeds_.result();
+  const bool catheter = load_.implant == Implant::temporary;
+  out.seeds = catheter ? dwells_ : seeds_.result();
   const auto warn = [&](const std::string& text) {
-    out.warnings.push_back(fmt::format("Needle {}: {}", load_.name, text));
+    out.warnings.push_back(fmt::format("{} {}: {}", catheter ? "Catheter" : "Needle", load_.name, text));
   };
   for (const std::string& harm : harms(needle.events)) warn(harm);
   if (auto warning = unbroken_.warning()) warn(*warning);
@@ -130,16 +156,39 @@ NeedleOutcome NeedleOnItsWay::outcome(bool has_gland) {
   const auto astray =
       std::count_if(out.seeds.begin(), out.seeds.end(), [](const SeedHistory& s) { return !s.in_tissue; });
   if (astray > 0) {
-    warn(fmt::format(
-        "{} of its {} seeds were not dropped in tissue whose displacement is known; they stay where they were "
-        "dropped.",
-        astray, out.seeds.size()));
+    const std::string number = fmt::format("{} of its {} ", astray, out.seeds.size());
+    warn(number + (catheter ? "dwell positions are not in tissue whose displacement is known; they count as if the "
+                              "tissue there had not moved."
+                            : "seeds were not dropped in tissue whose displacement is known; they stay where they were "
+                              "dropped."));
   }
   if (load_.beside_line_mm > 1.0) {
-    warn(fmt::format("Its planned seeds lie up to {:.1f} mm beside a straight line; the needle is straight.",
-                     load_.beside_line_mm));
+    warn(fmt::format("Its planned {} lie up to {:.1f} mm beside a straight line; the {} is straight.",
+                     catheter ? "dwell positions" : "seeds", load_.beside_line_mm, catheter ? "catheter" : "needle"));
   }
   return out;
+}
+
+/// Catheters at rest in tissue that creeps lose force; they cannot gain this much.
+constexpr double kMostGrowth = 1.25;
+
+/// [N] The root of the sum of the squared forces of all needles on the tissue.
+double all_forces_N(const Insertion& insertion) {
+  double squares = 0.0;
+  for (int needle = 0; needle < insertion.needles(); ++needle) {
+    for (const ContactState& contact : insertion.contacts_of(needle)) squares += contact.force.squaredNorm();
+  }
+  return std::sqrt(squares);
+}
+
+Error grown_forces(const std::string& where, double before_N, double after_N) {
+  return failure(
+      where,
+      fmt::format("while all catheters were at rest, their forces on the tissue grew from {:.3g} to {:.3g} N, "
+                  "which no tissue does; the creep of tissue between close catheters is not computed well "
+                  "enough",
+                  before_N, after_N),
+      "Set coupling.method = \"embedded\", whose creep fits together, or tissue.creep = 1, which leaves creep out");
 }
 
 }  // namespace
@@ -153,7 +202,10 @@ Result<GroupOutcome> simulate_group(const std::vector<PlannedNeedle>& staying,
   for (const PlannedNeedle& needle : all) scenario.insertions.push_back(needle.plan);
   GroupOutcome out;
   const double start = wall_s();
-  auto compiled = Model::compile(scenario, mesh, fmt::format("{}, needle {}", where, needles.front().load->name));
+  auto compiled = Model::compile(
+      scenario, mesh,
+      fmt::format("{}, {} {}", where, needles.front().load->implant == Implant::temporary ? "catheter" : "needle",
+                  needles.front().load->name));
   if (!compiled) return compiled.error();
   const std::shared_ptr<const Model> model = *std::move(compiled);
   std::optional<TargetMotion> gland;
@@ -174,7 +226,25 @@ Result<GroupOutcome> simulate_group(const std::vector<PlannedNeedle>& staying,
   }
   for (std::size_t k = 0; k < all.size() && all.size() > 1; ++k)
     on_their_way[k].keep_shape_in_place(simulation, static_cast<int>(k));
-  for (std::size_t k = staying.size(); k < all.size(); ++k) {
+  const bool catheters = needles.front().load->implant == Implant::temporary;
+  if (catheters) {
+    // The hand keeps the last catheter, at rest as the lock of the template keeps the others.
+    const double loaded_N = all_forces_N(simulation.insertion());
+    const auto look = [&](DwellLook at, double after_s, std::optional<Vec3>& gland_mm) -> Result<> {
+      on_their_way.back().wait(simulation, gland_now, after_s);
+      const double now_N = all_forces_N(simulation.insertion());
+      if (!(now_N <= kMostGrowth * loaded_N)) return grown_forces(where, loaded_N, now_N);
+      for (std::size_t k = staying.size(); k < all.size(); ++k)
+        on_their_way[k].see_dwells(simulation, static_cast<int>(k), at);
+      if (gland_now != nullptr) gland_mm = gland_now->now(simulation.insertion()).motion.shift_mm;
+      return Ok{};
+    };
+    const Scenario::Procedure& procedure = scenario.procedure;
+    if (auto seen = look(DwellLook::planning, procedure.pause_s, out.gland_at_planning_mm); !seen) return seen.error();
+    if (auto seen = look(DwellLook::delivery, procedure.planning_to_delivery_s, out.gland_at_delivery_mm); !seen)
+      return seen.error();
+  }
+  for (std::size_t k = staying.size(); k < all.size() && !catheters; ++k) {
     if (Result<> taken = simulation.take_up(static_cast<int>(k)); !taken) return taken.error();
     on_their_way[k].finish(simulation, gland_now);
   }

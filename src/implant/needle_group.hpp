@@ -23,14 +23,17 @@ struct NeedleOutcome {
 struct GroupOutcome {
   std::vector<NeedleOutcome> needles;  ///< without the staying ones
   std::vector<NeedleHistory> staying;
-  std::vector<std::string> warnings;  ///< about the staying needles
-  double compile_s = 0.0;             ///< wall-clock time to compile the model
+  std::vector<std::string> warnings;                               ///< about the staying needles
+  std::optional<Vec3> gland_at_planning_mm, gland_at_delivery_mm;  ///< as in ImplantHistory
+  double compile_s = 0.0;                                          ///< wall-clock time to compile the model
 };
 
 /// Simulates needles in one tissue: the staying needles go in and stay; then all others go in, one after the other, and
-/// then each of them, in the same order, drops its seeds and comes out.
+/// then each of them, in the same order, drops its seeds and comes out. Catheters stay: after a pause their dwell
+/// positions are seen as the images of the plan show them, and after a wait as they are at the delivery.
 /// @param staying needles without seeds @param where name of the scenario in messages
-/// Errors: those of Model::compile().
+/// Errors: those of Model::compile(); catheters at rest whose forces grow, since their creep is not computed well
+/// enough.
 Result<GroupOutcome> simulate_group(const std::vector<PlannedNeedle>& staying,
                                     const std::vector<PlannedNeedle>& needles, Scenario scenario, const TetMesh& mesh,
                                     double seed_length_mm, KnownTargets& targets, const std::string& where);

@@ -26,6 +26,7 @@ struct Group {
 };
 
 std::vector<Group> group_by_needle(const DosePlan& plan) {
+  const char* const needle_word = plan.implant == Implant::temporary ? "catheter" : "needle";
   std::vector<Group> groups;
   std::map<std::string, std::size_t> by_name;
   for (std::size_t k = 0; k < plan.sources.size(); ++k) {
@@ -50,7 +51,7 @@ std::vector<Group> group_by_needle(const DosePlan& plan) {
     }
   }
   for (std::size_t k = 0; k < groups.size(); ++k) {
-    if (groups[k].name.empty()) groups[k].name = fmt::format("needle {}", k + 1);
+    if (groups[k].name.empty()) groups[k].name = fmt::format("{} {}", needle_word, k + 1);
   }
   return groups;
 }
@@ -63,12 +64,23 @@ Vec3 direction_of(const std::vector<Vec3>& points, const Vec3& centre) {
   return superior(eigen.eigenvectors().col(2));
 }
 
-Result<NeedleLoad> load_needle(const DosePlan& plan, const Group& group, double seed_length_mm, double plug_mm) {
+/// What a plan calls its needles and what is in them, in messages.
+struct PlanWords {
+  const char* needle;
+  const char* seeds;
+};
+PlanWords words_of(const DosePlan& plan) {
+  return plan.implant == Implant::temporary ? PlanWords{"catheter", "dwell positions"} : PlanWords{"needle", "seeds"};
+}
+
+/// @param before_first_mm from the tip to the centre of the first seed or dwell position
+Result<NeedleLoad> load_needle(const DosePlan& plan, const Group& group, double before_first_mm) {
   std::vector<Vec3> points;
   Vec3 centre = Vec3::Zero();
   for (const std::size_t k : group.seeds) points.push_back(plan.sources[k].at_mm);
   for (const Vec3& x : points) centre += x / static_cast<double>(points.size());
   NeedleLoad load;
+  load.implant = plan.implant;
   load.name = group.name;
   load.direction = points.size() > 1 ? direction_of(points, centre) : axis_of(plan.sources[group.seeds.front()]);
   double deepest = -1e300;
@@ -78,11 +90,13 @@ Result<NeedleLoad> load_needle(const DosePlan& plan, const Group& group, double 
     load.beside_line_mm = std::max(load.beside_line_mm, (x - centre - along * load.direction).norm());
   }
   if (load.beside_line_mm > kStraight_mm) {
-    return input_error(fmt::format("{}, needle {}", plan.file, load.name),
-                       fmt::format("its seeds lie up to {:.1f} mm beside a straight line", load.beside_line_mm),
-                       "Give the plan with the seeds of each needle on a line, or name the needles of the seeds");
+    const auto [needle, seeds] = words_of(plan);
+    return input_error(
+        fmt::format("{}, {} {}", plan.file, needle, load.name),
+        fmt::format("its {} lie up to {:.1f} mm beside a straight line", seeds, load.beside_line_mm),
+        fmt::format("Give the plan with the {0} of each {1} on a line, or name the {1}s of the {0}", seeds, needle));
   }
-  const double tip = deepest + 0.5 * seed_length_mm + plug_mm;
+  const double tip = deepest + before_first_mm;
   load.tip_mm = centre + tip * load.direction;
   for (const std::size_t k : group.seeds) {
     const PlannedSource& seed = plan.sources[k];
@@ -93,14 +107,19 @@ Result<NeedleLoad> load_needle(const DosePlan& plan, const Group& group, double 
   }
   std::sort(load.seeds.begin(), load.seeds.end(),
             [](const LoadedSeed& a, const LoadedSeed& b) { return a.behind_tip_mm < b.behind_tip_mm; });
+  return load;
+}
+
+/// Checks that the seeds of a needle have room beside each other.
+Result<> check_train(const NeedleLoad& load, double seed_length_mm, const std::string& file) {
   for (std::size_t k = 1; k < load.seeds.size(); ++k) {
     const double apart = load.seeds[k].behind_tip_mm - load.seeds[k - 1].behind_tip_mm;
     if (apart >= 0.5 * seed_length_mm) continue;
-    return input_error(fmt::format("{}, needle {}", plan.file, load.name),
+    return input_error(fmt::format("{}, needle {}", file, load.name),
                        fmt::format("two of its seeds, of {:g} mm, are {:.2f} mm apart", seed_length_mm, apart),
                        "Leave one of them out, or give them to different needles");
   }
-  return load;
+  return Ok{};
 }
 
 }  // namespace
@@ -108,16 +127,37 @@ Result<NeedleLoad> load_needle(const DosePlan& plan, const Group& group, double 
 Result<std::vector<NeedleLoad>> load_needles(const DosePlan& plan, double seed_length_mm, double plug_mm) {
   if (plan.implant == Implant::temporary) {
     return input_error(plan.file, "the plan is a temporary implant, which has dwell positions and no seeds",
-                       "Give a plan of permanent seeds; stylet dose computes temporary ones");
+                       "Give a plan of permanent seeds");
   }
   if (plan.sources.empty()) return input_error(plan.file, "the plan has no seeds", "Give a plan with seeds");
   std::vector<NeedleLoad> needles;
   for (const Group& group : group_by_needle(plan)) {
-    Result<NeedleLoad> load = load_needle(plan, group, seed_length_mm, plug_mm);
+    Result<NeedleLoad> load = load_needle(plan, group, 0.5 * seed_length_mm + plug_mm);
     if (!load) return load.error();
+    if (Result<> fits = check_train(*load, seed_length_mm, plan.file); !fits) return fits.error();
     needles.push_back(*std::move(load));
   }
   return needles;
+}
+
+Result<std::vector<NeedleLoad>> load_catheters(const DosePlan& plan, double tip_mm) {
+  if (plan.implant == Implant::permanent) {
+    return input_error(plan.file, "the plan is a permanent implant, whose seeds are left by needles",
+                       "Give a plan with dwell times of a source");
+  }
+  const bool dwells =
+      std::any_of(plan.sources.begin(), plan.sources.end(), [](const PlannedSource& s) { return s.dwell_s > 0.0; });
+  if (!dwells) {
+    return input_error(plan.file, "no dwell position of the temporary implant has a dwell time above 0 s",
+                       "Give the dwell times (dwell_s)");
+  }
+  std::vector<NeedleLoad> catheters;
+  for (const Group& group : group_by_needle(plan)) {
+    Result<NeedleLoad> load = load_needle(plan, group, tip_mm);
+    if (!load) return load.error();
+    catheters.push_back(*std::move(load));
+  }
+  return catheters;
 }
 
 void aim(NeedleLoad& needle, const Vec3& shift) {

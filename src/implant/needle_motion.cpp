@@ -55,7 +55,7 @@ NeedleMotion plan_needle_motion(const NeedleLoad& load, const Vec3& entry, const
   Way way(entry, load.direction, scenario.needle.length_mm);
   way.go_to(insertion.depth_mm, procedure.speed_mm_per_s);
   result.in_s = way.now();
-  if (load.seeds.empty()) {
+  if (load.seeds.empty() || load.implant == Implant::temporary) {
     insertion.motion = std::move(way).motion();
     return result;
   }

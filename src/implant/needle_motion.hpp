@@ -16,12 +16,12 @@ struct SeedDrop {
 /// The motion of a needle's base through a procedure, and when its seeds are left.
 struct NeedleMotion {
   PlannedInsertion insertion;
-  std::vector<SeedDrop> drops;  ///< one for each seed of the load
+  std::vector<SeedDrop> drops;  ///< one for each seed of the load; none of a catheter
   double in_s = 0.0;            ///< [s] when the needle has reached its full depth
 };
 
 /// Plans the motion of one needle: in, a pause, out slowly while the seeds are dropped, out. It ends 3 mm in front of
-/// the skin. A needle without seeds goes in and stays.
+/// the skin. A needle without seeds, or a catheter, goes in and stays.
 /// @param entry [mm] LPS skin point on the needle's line
 NeedleMotion plan_needle_motion(const NeedleLoad& load, const Vec3& entry, const Scenario& scenario,
                                 double seed_length_mm);

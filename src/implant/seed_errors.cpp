@@ -72,16 +72,34 @@ std::vector<PartErrors> errors_by_third(const ImplantHistory& history) {
   return parts;
 }
 
+std::vector<SeedCause> causes_of(Implant implant) {
+  if (implant == Implant::temporary)
+    return {SeedCause::bend, SeedCause::motion, SeedCause::relaxation, SeedCause::wait};
+  return {SeedCause::bend,   SeedCause::motion,  SeedCause::relaxation,
+          SeedCause::strand, SeedCause::release, SeedCause::aim};
+}
+
+ImplantHistory history_at_planning(const ImplantHistory& history) {
+  ImplantHistory then = history;
+  for (SeedHistory& dwell : then.seeds) {
+    if (!dwell.at_planning) continue;
+    dwell.dropped_mm = dwell.at_planning->room_mm;
+    dwell.rest_mm = dwell.at_planning->tissue_mm;
+    dwell.by(SeedCause::wait).setZero();
+  }
+  return then;
+}
+
 std::vector<CauseOfErrors> causes_of_errors(std::span<const SeedHistory> seeds) {
   std::vector<CauseOfErrors> causes;
   const auto count = static_cast<double>(
       std::count_if(seeds.begin(), seeds.end(), [](const SeedHistory& seed) { return !seed.lost; }));
-  for (std::size_t k = 0; k < kSeedCauses; ++k) {
-    CauseOfErrors of{.cause = static_cast<SeedCause>(k)};
+  for (const SeedCause cause : causes_of(implant_of(seeds))) {
+    CauseOfErrors of{.cause = cause};
     for (const SeedHistory& seed : seeds) {
       if (seed.lost) continue;
-      of.mean_mm += seed.cause_mm[k].norm() / count;
-      of.mean_vector_mm += seed.cause_mm[k] / count;
+      of.mean_mm += seed.by(cause).norm() / count;
+      of.mean_vector_mm += seed.by(cause) / count;
     }
     causes.push_back(of);
   }

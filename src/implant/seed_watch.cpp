@@ -28,28 +28,24 @@ void SeedWatch::place(Seed& seed, const Needle& needle, double arc_mm) {
   seed.is_placed = true;
 }
 
-/// Finds the tissue at the seed: at its centre, and at its ends for its axis.
+/// Finds the tissue at the seed.
 void SeedWatch::leave(Seed& seed, Simulation& simulation, double since_start_s) {
   seed.is_left = true;
   left_.push_back(seed.history.number);
   SeedHistory& h = seed.history;
   h.dropped_s = since_start_s;
-  const DisplacementAt displacement = displacement_in(simulation);
-  const auto centre = material_at(h.dropped_mm, displacement);
-  h.in_tissue = centre.has_value();
-  // What the nearest material point misses of the place counts as motion of the tissue.
-  h.rest_mm = centre ? Vec3(h.dropped_mm - centre->moved.whole) : h.dropped_mm;
+  const TissueAt tissue = tissue_of_capsule(h.dropped_mm, seed.axis, seed_length_mm_, displacement_in(simulation));
+  h.in_tissue = tissue.is_known;
+  h.rest_mm = tissue.rest_mm;
+  h.axis = tissue.axis;
   h.by(SeedCause::aim) = load_.aim_mm;
   h.by(SeedCause::bend) = h.dropped_mm - h.planned_mm - load_.aim_mm;
-  h.by(SeedCause::relaxation) = centre ? Vec3(-centre->moved.lasting) : Vec3::Zero();
+  h.by(SeedCause::relaxation) = -tissue.lasting_mm;
   h.by(SeedCause::motion) = h.rest_mm - h.dropped_mm - h.by(SeedCause::relaxation);
-  const Vec3 half = 0.5 * seed_length_mm_ * seed.axis;
-  const auto front = material_at(h.dropped_mm + half, displacement);
-  const auto back = material_at(h.dropped_mm - half, displacement);
-  h.axis = front && back && (front->x - back->x).norm() > 0.0 ? (front->x - back->x).normalized() : seed.axis;
 }
 
 void SeedWatch::add(Simulation& simulation, double since_start_s) {
+  if (motion_.drops.empty()) return;
   const Needle& needle = simulation.insertion().needle();
   for (std::size_t k = 0; k < seeds_.size(); ++k) {
     Seed& seed = seeds_[k];

@@ -86,6 +86,25 @@ ImplantHistory without_records(ImplantHistory history) {
   return history;
 }
 
+/// What is asked for beside a temporary implant and only permanent ones have.
+Result<> check_temporary_settings(const ImplantSettings& settings, const DosePlan& plan) {
+  if (settings.compensate > 0) {
+    return input_error(plan.file,
+                       fmt::format("the plan is a temporary implant, and compensation ({} rounds) aims needles so that "
+                                   "their seeds come to rest where they were planned; catheters are planned where they "
+                                   "are found on images",
+                                   settings.compensate),
+                       "Leave compensation out");
+  }
+  if (!settings.found.empty()) {
+    return input_error(
+        settings.found.string(),
+        "found seeds are compared with seeds that rest, and the plan is a temporary implant, " + plan.file,
+        "Leave the found seeds out");
+  }
+  return Ok{};
+}
+
 void append(std::vector<std::string>& all, const std::vector<std::string>& more) {
   all.insert(all.end(), more.begin(), more.end());
 }
@@ -102,6 +121,9 @@ Result<ImplantOutcome> implant(const Scenario& scenario, const std::string& wher
   Result<ImplantPlan> read = read_implant_plan(scenario, where, progress);
   if (!read) return read.error();
   const ImplantPlan& of = *read;
+  if (of.plan.implant == Implant::temporary) {
+    if (Result<> possible = check_temporary_settings(settings, of.plan); !possible) return possible.error();
+  }
   Result<std::optional<FoundSeeds>> found_seeds = found_seeds_of(settings, of.plan);
   if (!found_seeds) return found_seeds.error();
   ImplantOutcome outcome;
@@ -147,6 +169,16 @@ Result<ImplantOutcome> implant(const Scenario& scenario, const std::string& wher
   Result<std::optional<DoseCourse>> oedema = course_of_oedema(of, outcome.delivered.plan);
   if (!oedema) return oedema.error();
   outcome.oedema = *std::move(oedema);
+  if (of.plan.implant == Implant::temporary) {
+    ImplantHistory then = history_at_planning(outcome.history);
+    // Only histograms and goals of this dose are shown, which do not need its grid.
+    DoseOptions at_planning = of.options;
+    at_planning.grid_step_mm *= kGridNotShown;
+    Result<DoseEvaluation> seen =
+        evaluate_dose(delivered_plan(of.plan, then), of.source, of.structures.structures, at_planning, progress);
+    if (!seen) return seen.error();
+    outcome.at_planning = OtherImplant{"at planning", std::move(then), *std::move(seen)};
+  }
   for (const TissuePreset preset : {TissuePreset::firm, TissuePreset::soft}) {
     if (!settings.span) break;
     Scenario other = scenario;

@@ -52,10 +52,11 @@ Vec3 centre_of(const DoseStructures& structures, const DosePlan& plan) {
 
 Result<DoseOptions> dose_options(const Scenario& scenario, const DoseStructures& structures, const DosePlan& plan) {
   DoseOptions options;
-  if (scenario.plan.goals.empty()) {
+  // The program's own goals are those of permanent implants.
+  if (scenario.plan.goals.empty() && plan.implant == Implant::permanent) {
     const auto own = permanent_prostate_goals();
     options.goals.assign(own.begin(), own.end());
-  } else {
+  } else if (!scenario.plan.goals.empty()) {
     Result<std::vector<DoseGoal>> goals = read_goals(scenario.plan.goals);
     if (!goals) return goals.error();
     options.goals = *std::move(goals);
@@ -65,6 +66,36 @@ Result<DoseOptions> dose_options(const Scenario& scenario, const DoseStructures&
                       .at_start = Vec3(percent[0], percent[1], percent[2]) / 100.0,
                       .half_life_days = scenario.oedema.half_life_days};
   return options;
+}
+
+/// A key of the scenario that has no meaning in a temporary implant is refused, since the user expects an effect of it.
+Result<> check_temporary_scenario(const Scenario& scenario, const std::string& where) {
+  struct Choice {
+    bool is_made;
+    const char* key;
+    std::string value;
+    const char* why;
+  };
+  const Scenario::Seed& seed = scenario.seed;
+  const auto& percent = scenario.oedema.swelling_percent;
+  const Choice choices[] = {
+      {scenario.procedure.technique == SeedTechnique::pushed, "procedure.technique", "\"pushed\"",
+       "no seed is pushed out of a catheter"},
+      {seed.stranded, "seed.stranded", "true", "the dwell positions of a catheter are no strand of seeds"},
+      {seed.release_mm != 0.0, "seed.release_mm", fmt::format("{:g}", seed.release_mm), "no seed is released"},
+      {seed.release_sd_mm != 0.0, "seed.release_sd_mm", fmt::format("{:g}", seed.release_sd_mm), "no seed is released"},
+      {seed.loss_percent != 0.0, "seed.loss_percent", fmt::format("{:g}", seed.loss_percent), "no seed can be lost"},
+      {percent[0] != 0.0 || percent[1] != 0.0 || percent[2] != 0.0, "oedema.swelling_percent",
+       fmt::format("[{:g}, {:g}, {:g}]", percent[0], percent[1], percent[2]),
+       "the swelling of the program is that of the weeks in which seeds decay"}};
+  for (const Choice& choice : choices) {
+    if (!choice.is_made) continue;
+    return input_error(where,
+                       fmt::format("the plan is a temporary implant, and {} = {} is for permanent ones: {}", choice.key,
+                                   choice.value, choice.why),
+                       fmt::format("Leave {} out", choice.key));
+  }
+  return Ok{};
 }
 
 }  // namespace
@@ -81,8 +112,13 @@ Result<ImplantPlan> read_implant_plan(const Scenario& scenario, const std::strin
   Result<SourceModel> source = choose_source(scenario.plan.source, out.plan);
   if (!source) return source.error();
   out.source = *std::move(source);
+  const bool temporary = out.plan.implant == Implant::temporary;
+  if (temporary) {
+    if (Result<> possible = check_temporary_scenario(scenario, where); !possible) return possible.error();
+  }
   Result<std::vector<NeedleLoad>> needles =
-      load_needles(out.plan, out.source.outer_length_mm, scenario.procedure.plug_mm);
+      temporary ? load_catheters(out.plan, scenario.procedure.catheter_tip_mm)
+                : load_needles(out.plan, out.source.outer_length_mm, scenario.procedure.plug_mm);
   if (!needles) return needles.error();
   out.needles = *std::move(needles);
   order_needles(out.needles, scenario.procedure.order);

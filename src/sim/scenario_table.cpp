@@ -282,13 +282,15 @@ void describe_template(ScenarioEntries& keys) {
 void describe_implant(ScenarioEntries& keys) {
   keys.text(
       "plan.file",
-      "plan of seeds for stylet implant: DICOM RTPLAN, JSON or CSV; a relative path starts at the scenario file's "
-      "folder",
+      "plan of seeds, or of dwell positions (HDR), for stylet implant: DICOM RTPLAN, JSON or CSV; a relative path "
+      "starts at the scenario file's folder",
       [](auto& s, const Slot&) { return &s.plan.file; }, {.example = "\"demo_plan.csv\""});
   keys.text("plan.source",
             "source model of the seeds (stylet info sources), or a file with one; none = the plan names it",
             [](auto& s, const Slot&) { return &s.plan.source; }, {.example = "\"i125_6711\""});
-  keys.text("plan.goals", "table of goals for the dose (CSV); none = goals for permanent implants of the prostate",
+  keys.text("plan.goals",
+            "table of goals for the dose (CSV); none = goals for permanent implants of the prostate, and no goals "
+            "for temporary ones",
             [](auto& s, const Slot&) { return &s.plan.goals; }, {.example = "\"goals.csv\""});
   keys.choice(
       "procedure.technique",
@@ -300,7 +302,8 @@ void describe_implant(ScenarioEntries& keys) {
               [](auto& s, const Slot&) { return &s.procedure.order; });
   keys.choice("procedure.together",
               "needles of the plan that are in the tissue at the same time; row = all needles at one height of the "
-              "template go in before the first of them drops its seeds; all = all needles of the plan",
+              "template go in before the first of them drops its seeds; all = all needles of the plan; the catheters "
+              "of a temporary implant are always together",
               [](auto& s, const Slot&) { return &s.procedure.together; });
   keys.texts("procedure.stabilising", 0,
              "template holes of needles without seeds, which go in first, as deep as the deepest needle of the plan, "
@@ -310,7 +313,8 @@ void describe_implant(ScenarioEntries& keys) {
   keys.number("procedure.speed_mm_per_s", "mm/s", 0.1, 1000, "speed of a needle's base on the way in",
               [](auto& s, const Slot&) { return &s.procedure.speed_mm_per_s; });
   keys.number("procedure.pause_s", "s", 0, 3600,
-              "pause at full depth before the first seed is dropped, and before each seed with technique = \"pushed\"",
+              "pause at full depth before the first seed is dropped, and before each seed with technique = \"pushed\"; "
+              "in a temporary implant, from the last catheter's full depth to the images of the plan",
               [](auto& s, const Slot&) { return &s.procedure.pause_s; });
   keys.number("procedure.drop_speed_mm_per_s", "mm/s", 0.1, 1000,
               "speed of a needle's base on its way out while seeds are dropped",
@@ -321,6 +325,14 @@ void describe_implant(ScenarioEntries& keys) {
   keys.number("procedure.plug_mm", "mm", 0, 30,
               "length of the plug, of bone wax for instance, between the needle's tip and the first seed",
               [](auto& s, const Slot&) { return &s.procedure.plug_mm; });
+  keys.number("procedure.catheter_tip_mm", "mm", 0, 50,
+              "temporary implants: distance from a catheter's tip to the centre of its most distal dwell position; the "
+              "default is an assumption, since it depends on catheter and afterloader",
+              [](auto& s, const Slot&) { return &s.procedure.catheter_tip_mm; });
+  keys.number("procedure.planning_to_delivery_s", "s", 0, 86400,
+              "temporary implants: time from the images on which the dwell times are planned, taken pause_s after the "
+              "last catheter is in, to the delivery of the dose; the default, an hour, is an assumption",
+              [](auto& s, const Slot&) { return &s.procedure.planning_to_delivery_s; });
   keys.boolean("seed.stranded",
                "whether the seeds of a needle are a strand, which keeps its spacing along its own, flexible line",
                [](auto& s, const Slot&) { return &s.seed.stranded; });

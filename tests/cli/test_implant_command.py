@@ -40,6 +40,82 @@ E4,10,S-1-S
 """
 
 
+HDR = """# source: ir192_mhdr_v2
+# implant: temporary
+# strength_U: 40000
+# prescription_Gy: 15
+x_mm,y_mm,z_mm,needle,dwell_s
+-10,0,30,1,20
+-10,0,25,1,30
+-10,0,20,1,20
+10,0,30,2,20
+10,0,25,2,30
+10,0,20,2,0
+"""
+
+
+class TemporaryImplant(InFolder):
+    def case(self, plan=HDR):
+        (self.folder / "case.toml").write_text(SCENARIO)
+        (self.folder / "plan.csv").write_text(plan)
+
+    def test_dwell_positions_move_between_planning_and_delivery_and_keep_their_times(self):
+        self.case()
+        done = self.succeed("implant", "case.toml", "-o", "out", "--set", "tissue.creep_s=600", "--json", "json")
+        self.assertIn("2 catheters, 6 dwell positions", done.stdout)
+        self.assertIn("planning to delivery", done.stdout)
+        self.assertNotIn("seed", done.stdout)
+        result = json.loads((self.folder / "out/summary.json").read_text())
+        self.assertEqual(result, json.loads((self.folder / "json").read_text()))
+        implant = result["implant"]
+        self.assertNotIn("seeds", implant)
+        self.assertEqual([catheter["name"] for catheter in implant["catheters"]], ["1", "2"])
+        self.assertEqual(implant["planning_to_delivery_s"], 3600)
+        moved = 0.0
+        for dwell in implant["dwell_positions"]:
+            self.assertTrue(dwell["in_tissue"])
+            for axis in range(3):
+                error = dwell["delivery_mm"][axis] - dwell["planned_mm"][axis]
+                self.assertAlmostEqual(error, sum(part[axis] for part in dwell["why"].values()), places=9)
+                wait = dwell["delivery_mm"][axis] - dwell["planning_mm"][axis]
+                self.assertAlmostEqual(wait, dwell["why"]["planning to delivery"][axis], places=9)
+                moved = max(moved, abs(wait))
+        self.assertGreater(moved, 0.05)
+        for dvh in (implant["delivered_dvh"], implant["at_planning"]["delivered_dvh"]):
+            self.assertEqual([row["structure"] for row in dvh], [row["structure"] for row in implant["planned_dvh"]])
+        self.assertEqual(implant["goals"], [])
+        with (self.folder / "out/seeds.csv").open(newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([float(row["dwell_s"]) for row in rows], [20, 30, 20, 20, 30, 0])
+        self.assertAlmostEqual(float(rows[1]["delivery_z_mm"]), implant["dwell_positions"][1]["delivery_mm"][2], places=3)
+        report = (self.folder / "out/report.html").read_text()
+        self.assertIn("Simulation of a temporary implant", report)
+        self.assertIn("Errors of the dwell positions", report)
+        # The delivered plan is a temporary plan; positions without a time are no places of its source.
+        again = self.json_of("dose", "out/delivered/plan.dcm", "-o", "again")
+        self.assertEqual((again["implant"], again["seeds"]), ("temporary", 5))
+        for dwell, position in zip(implant["dwell_positions"], again["seed_list"]):
+            self.assertAlmostEqual(position["dwell_s"], dwell["dwell_s"], places=6)
+            for axis in range(3):
+                self.assertAlmostEqual(position["position_mm"][axis], dwell["delivery_mm"][axis], places=4)
+        for row, other in zip(again["dvh"], implant["delivered_dvh"]):
+            self.assertEqual(row["structure"], other["structure"])
+
+    def test_what_only_permanent_implants_have_is_refused_before_anything_is_computed(self):
+        self.case()
+        for key, value in (("seed.stranded", "true"), ("seed.release_mm", "1"), ("seed.release_sd_mm", "1"),
+                           ("seed.loss_percent", "1"), ("oedema.swelling_percent", "[10, 10, 10]"),
+                           ("procedure.technique", '"pushed"')):
+            self.refuse("implant", "case.toml", "-o", "out", "--set", f"{key}={value}",
+                        says=["case.toml", "temporary implant", key])
+        self.refuse("implant", "case.toml", "-o", "out", "--compensate", "1", says=["plan.csv", "compensation"])
+        self.refuse("implant", "case.toml", "-o", "out", "--found", "found.csv", says=["found.csv", "temporary"])
+        self.refuse("implant", "case.toml", "-o", "out", "--set", "procedure.planning_to_delivery_s=-1",
+                    says=["planning_to_delivery_s"])
+        self.case(HDR.replace(",20\n", ",0\n").replace(",30\n", ",0\n"))
+        self.refuse("implant", "case.toml", "-o", "out", says=["plan.csv", "above 0 s"])
+
+
 class Implant(InFolder):
     def case(self, scenario=SCENARIO, plan=PLAN):
         (self.folder / "case.toml").write_text(scenario)

@@ -77,6 +77,31 @@ TEST(LoadNeedles, refuses_what_no_straight_needle_can_carry) {
   EXPECT_FALSE(load_needles(plan_of({}), 4.5, 0.0).ok());
 }
 
+TEST(LoadCatheters, takes_the_line_of_the_dwell_positions_and_a_tip_beyond_them_and_keeps_positions_without_time) {
+  DosePlan plan = plan_of({seed(Vec3(5, 2, 0), "1"), seed(Vec3(5, 2, 1), "1"), seed(Vec3(-5, 2, 10), "2")});
+  plan.implant = Implant::temporary;
+  plan.sources[1].dwell_s = 4.0;
+  const auto catheters = load_catheters(plan, 7.0).value();
+  ASSERT_EQ(catheters.size(), 2U);
+  const NeedleLoad& load = catheters.front();
+  EXPECT_EQ(load.implant, Implant::temporary);
+  EXPECT_LT((load.tip_mm - Vec3(5, 2, 8)).norm(), 1e-12);
+  ASSERT_EQ(load.seeds.size(), 2U);
+  EXPECT_EQ(load.seeds[0].number, 1U);
+  EXPECT_NEAR(load.seeds[1].behind_tip_mm, 8.0, 1e-12);
+}
+
+TEST(LoadCatheters, refuses_permanent_plans_plans_without_time_and_bent_channels) {
+  DosePlan plan = plan_of({seed(Vec3(0, 0, 0), "1"), seed(Vec3(20, 0, 10), "1"), seed(Vec3(0, 0, 20), "1")});
+  EXPECT_NE(load_catheters(plan, 6.0).error().message().find("permanent"), std::string::npos);
+  plan.implant = Implant::temporary;
+  EXPECT_NE(load_catheters(plan, 6.0).error().message().find("above 0 s"), std::string::npos);
+  plan.sources[0].dwell_s = 1.0;
+  const std::string bent = load_catheters(plan, 6.0).error().message();
+  EXPECT_NE(bent.find("plan.csv, catheter 1"), std::string::npos) << bent;
+  EXPECT_NE(bent.find("dwell positions lie up to"), std::string::npos) << bent;
+}
+
 TEST(OrderNeedles, is_by_height_or_as_planned) {
   std::vector<NeedleLoad> needles(3);
   for (std::size_t k = 0; k < 3; ++k) {

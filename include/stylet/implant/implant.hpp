@@ -7,6 +7,7 @@
 #include "stylet/sim/gland_motion.hpp"
 #include "stylet/sim/model.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,9 @@ struct ImplantHistory {
   std::vector<SeedHistory> seeds;          ///< in the order of the plan
   std::vector<std::string> warnings;       ///< sentences for the user: harms, seeds that could not be followed
   int nodes = 0;                           ///< of the mesh
+  /// Mean shift of the gland [mm] LPS when the dwell positions are seen at planning, and at delivery. Empty for a
+  /// permanent implant and without a gland.
+  std::optional<Vec3> gland_at_planning_mm, gland_at_delivery_mm;
   double compile_s = 0.0;  ///< wall-clock time to compile the models of all needles, summed over threads
 };
 
@@ -41,11 +45,14 @@ struct ImplantHistory {
 /// one by one or in groups (Scenario::procedure). Groups do not feel each other's tracks. A seed belongs to the
 /// material point where it was dropped, found with the needle's near field; with all needles out this point goes back
 /// to where it was, and takes the seed along (docs/theory/implant.md).
+/// Catheters of a temporary implant go in one after the other and all stay. After procedure.pause_s their dwell
+/// positions are seen at planning, and after procedure.planning_to_delivery_s at delivery.
 /// @param scenario tissue, needle and procedure; its insertions are not used
 /// @param mesh the patient's tetrahedra
 /// @param seed_length_mm length of a seed's capsule
 /// @param where name of the scenario in messages
-/// Errors: those of Model::compile(); a needle that misses the patient or is too short.
+/// Errors: those of Model::compile(); a needle that misses the patient or is too short; catheters with a coupling that
+/// holds one needle only.
 Result<ImplantHistory> simulate_implant(const Scenario& scenario, const TetMesh& mesh,
                                         const std::vector<NeedleLoad>& needles, double seed_length_mm,
                                         const std::string& where, const Progress& progress = {});

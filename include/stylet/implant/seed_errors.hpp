@@ -39,12 +39,21 @@ inline constexpr std::array<const char*, 3> kThirds{"base", "mid", "apex"};
 /// Of the superior, middle and inferior third of the planned seeds' extent in z. Parts without a seed are left out.
 std::vector<PartErrors> errors_by_third(const ImplantHistory& history);
 
+/// The causes that errors can have in a permanent or a temporary implant, in the order in which files and pages give
+/// them.
+std::vector<SeedCause> causes_of(Implant implant);
+
+/// The implant as the images of the plan show it: each dwell position comes to rest where the tissue is that was there
+/// at planning, and nothing has moved since. @param history of a temporary implant
+ImplantHistory history_at_planning(const ImplantHistory& history);
+
 /// The share of one cause in the errors of all seeds.
 struct CauseOfErrors {
   SeedCause cause{};
   double mean_mm = 0.0;  ///< mean length of its part of the error
   Vec3 mean_vector_mm = Vec3::Zero();
 };
+/// One for each of causes_of() the kind of implant.
 std::vector<CauseOfErrors> causes_of_errors(std::span<const SeedHistory> seeds);
 
 /// The plan with the seeds where they have come to rest. Lost seeds are left out.

@@ -38,9 +38,11 @@ struct ImplantOutcome {
   std::optional<DoseCourse> oedema;  ///< D90 of the target over time, where the gland swells
   double seed_length_mm = 0.0;
   std::optional<OtherImplant> before;  ///< without compensation, where the needles were aimed to make up for the errors
-  std::vector<OtherImplant> spans;     ///< with firmer and softer tissue, where they were asked for
-  std::optional<FoundImplant> found;   ///< where seeds that were found are given
-  std::vector<std::string> warnings;   ///< of reader, mesher, plan and simulation
+  /// A temporary implant as the images of the plan show it, before the wait until the delivery.
+  std::optional<OtherImplant> at_planning;
+  std::vector<OtherImplant> spans;    ///< with firmer and softer tissue, where they were asked for
+  std::optional<FoundImplant> found;  ///< where seeds that were found are given
+  std::vector<std::string> warnings;  ///< of reader, mesher, plan and simulation
 };
 
 /// Writes the result folder of `stylet implant` (docs/results.md): report.html, seeds.csv, run.h5, the folders planned

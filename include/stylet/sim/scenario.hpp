@@ -175,6 +175,8 @@ struct Scenario {
     double drop_speed_mm_per_s = 5.0;
     double retract_speed_mm_per_s = 20.0;
     double plug_mm = 0.0;
+    double catheter_tip_mm = 6.0;  ///< temporary implants: tip to the centre of the most distal dwell position
+    double planning_to_delivery_s = 3600.0;  ///< temporary implants: from the images of the plan to the dose
     bool operator==(const Procedure&) const = default;
   } procedure;
   /// What becomes of a seed beside the motion of the tissue.

@@ -283,6 +283,40 @@ TEST(FoundCsv, has_a_row_for_each_seed_of_the_plan_and_each_found_seed_without_m
   EXPECT_EQ(rows, 1U + 44U + 1U);
 }
 
+/// The invented implant as a temporary one, whose dwell positions have moved since planning.
+ImplantOutcome temporary_outcome() {
+  ImplantOutcome implant = outcome();
+  for (SeedHistory& dwell : implant.history.seeds) {
+    dwell.lost = false;
+    dwell.by(SeedCause::release).setZero();
+    dwell.by(SeedCause::wait) = Vec3(0.0, 0.1, -1.5);
+    dwell.at_planning = DwellAtPlanning{dwell.dropped_mm, dwell.rest_mm};
+    dwell.rest_mm += dwell.by(SeedCause::wait);
+  }
+  implant.at_planning = OtherImplant{"at planning", history_at_planning(implant.history), implant.planned};
+  return implant;
+}
+
+TEST(TemporaryPage, speaks_of_dwell_positions_and_catheters_and_has_three_places_and_doses) {
+  const ImplantOutcome implant = temporary_outcome();
+  const std::string text = markup(page_of(implant));
+  EXPECT_EQ(count(text, "{{"), 0U);
+  EXPECT_EQ(count(text, "Simulation of a temporary implant"), 1U);
+  EXPECT_EQ(count(text, "Errors of the dwell positions"), 1U);
+  EXPECT_GE(count(text, "Tissue at planning [mm]"), 1U);
+  EXPECT_GE(count(text, "At planning"), 1U);
+  EXPECT_EQ(count(text, "against the tissue, on the whole"), 1U);
+  EXPECT_EQ(count(text, "needles out"), 0U);
+  const std::string table = seeds_csv(implant);
+  EXPECT_EQ(count(table, "planning_room_x_mm"), 1U);
+  EXPECT_EQ(count(table, "wait_z_mm"), 1U);
+  EXPECT_EQ(count(table, "strand"), 0U);
+  const auto json = nlohmann::json::parse(implant_json(implant));
+  EXPECT_EQ(json["implant"]["dwell_positions"].size(), implant.history.seeds.size());
+  EXPECT_EQ(json["implant"]["why"].back()["cause"], "planning to delivery");
+  EXPECT_FALSE(json["implant"].contains("seeds"));
+}
+
 TEST(CausePicture, leaves_out_causes_that_moved_no_seed_and_a_sentence_says_so) {
   ImplantHistory history = outcome().history;
   std::string picture = results::cause_picture(history);

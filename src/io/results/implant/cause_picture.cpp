@@ -90,7 +90,7 @@ std::string cause_picture(const ImplantHistory& history) {
   const double bottom = kCauseTop + kCauseGroupHigh * static_cast<double>(groups.size());
   std::string svg = fmt::format(
       "<svg class=\"causes-picture\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"Size and direction of the causes "
-      "of the seeds’ errors\" font-size=\"14\">{}",
+      "of the errors\" font-size=\"14\">{}",
       kCauseLeft + kCauseWide + kCauseRight, bottom + 44, scale.lines(bottom));
   double top = kCauseTop;
   for (const CauseGroup& group : groups) {

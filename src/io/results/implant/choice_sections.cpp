@@ -6,6 +6,7 @@
 #include "fixed_number.hpp"
 #include "implant/distance_picture.hpp"
 #include "implant/implant_tables.hpp"
+#include "implant/implant_words.hpp"
 #include "report/html_parts.hpp"
 #include "report/text.hpp"
 
@@ -60,7 +61,9 @@ std::string choice_sentence(const std::vector<ImplantChoice>& choices, const std
     const StructureDose* target = find_region(*choice.dose, "prostate");
     if (target) d90.push_back(target->dvh.dose_of_percent(90.0));
   }
-  std::string text = "The mean error of the seeds is " + figures_in_words(choices, errors, 1, "mm") + ".";
+  const char* const sources = nouns_of(*choices.front().history).sources;
+  std::string text =
+      fmt::format("The mean error of the {} is ", sources) + figures_in_words(choices, errors, 1, "mm") + ".";
   if (d90.size() == choices.size()) text += " The target’s D90 is " + figures_in_words(choices, d90, 0, "Gy") + ".";
   return text + explained_sentence(choices, found);
 }
@@ -68,9 +71,8 @@ std::string choice_sentence(const std::vector<ImplantChoice>& choices, const std
 /// @param id of the heading @param intro HTML
 std::string choice_section(const char* id, const char* heading, const char* intro,
                            const std::vector<ImplantChoice>& choices, const ImplantOutcome& outcome) {
-  std::string head = text_heading("");
-  for (const char* name :
-       {"Seeds", "Mean distance [mm]", "95 % within [mm]", "Left [mm]", "Posterior [mm]", "Superior [mm]"})
+  std::string head = text_heading("") + figure_heading(capital(nouns_of(outcome.history).sources));
+  for (const char* name : {"Mean distance [mm]", "95 % within [mm]", "Left [mm]", "Posterior [mm]", "Superior [mm]"})
     head += figure_heading(name);
   std::string rows;
   std::vector<DistanceCurve> curves;

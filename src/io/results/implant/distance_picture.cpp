@@ -2,6 +2,7 @@
 #include "implant/distance_picture.hpp"
 
 #include "dose/round_number.hpp"
+#include "implant/implant_words.hpp"
 #include "report/text.hpp"
 
 #include <fmt/format.h>
@@ -38,11 +39,13 @@ std::string distance_picture(const std::vector<DistanceCurve>& curves) {
   const auto x = [&](double mm) { return kDistanceLeft + kDistanceWide * mm / end; };
   const auto y = [](double percent) { return kDistanceTop + kDistanceHigh * (1.0 - percent / 100.0); };
   const double keys = kDistanceTop + kDistanceHigh + 62;
+  const ImplantNouns& nouns = nouns_of(implant_of(*curves.front().seeds));
   std::string svg = fmt::format(
-      "<svg class=\"errors-picture distances\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"Share of the seeds "
-      "within a "
+      "<svg class=\"errors-picture distances\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"Share of the {} within "
+      "a "
       "distance from plan\" font-size=\"14\">",
-      kDistanceLeft + kDistanceWide + kDistanceRight, keys + kDistanceKeyLine * static_cast<double>(curves.size()));
+      kDistanceLeft + kDistanceWide + kDistanceRight, keys + kDistanceKeyLine * static_cast<double>(curves.size()),
+      nouns.sources);
   for (int percent = 0; percent <= 100; percent += 25) {
     svg += fmt::format(
         "<path d=\"M{} {:.1f}h{}\" stroke=\"{}\"/><text class=\"tick\" x=\"{}\" y=\"{:.1f}\" "
@@ -56,8 +59,9 @@ std::string distance_picture(const std::vector<DistanceCurve>& curves) {
   }
   svg += fmt::format(
       "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">Distance from the planned place [mm]</text><text "
-      "transform=\"translate(14 {}) rotate(-90)\" text-anchor=\"middle\">Seeds within it [%]</text>",
-      kDistanceLeft + kDistanceWide / 2, kDistanceTop + kDistanceHigh + 42, kDistanceTop + kDistanceHigh / 2);
+      "transform=\"translate(14 {}) rotate(-90)\" text-anchor=\"middle\">{} within it [%]</text>",
+      kDistanceLeft + kDistanceWide / 2, kDistanceTop + kDistanceHigh + 42, kDistanceTop + kDistanceHigh / 2,
+      capital(nouns.sources));
   for (std::size_t k = 0; k < curves.size(); ++k) {
     const std::string look = fmt::format("stroke=\"{}\" stroke-width=\"2.5\" stroke-dasharray=\"{}\"", curves[k].colour,
                                          curves[k].dashes.empty() ? "none" : curves[k].dashes);

@@ -105,10 +105,11 @@ std::string error_picture(const ImplantHistory& history, const std::vector<std::
     if (seed.lost) continue;
     const double error = seed.error_mm()[static_cast<Index>(axis)];
     const double shown = scales.shown(error);
-    svg += third_mark(scales.x(seed.planned_mm.z()), scales.y(shown), thirds[k],
-                      fmt::format("Seed {}, needle {}: {}", seed.number + 1, history.needles[seed.needle].name,
-                                  toward_text(error, axis)),
-                      shown != error);
+    svg +=
+        third_mark(scales.x(seed.planned_mm.z()), scales.y(shown), thirds[k],
+                   fmt::format("{} {}, {} {}: {}", capital(nouns_of(history).source), seed.number + 1,
+                               nouns_of(history).needle, history.needles[seed.needle].name, toward_text(error, axis)),
+                   shown != error);
   }
   return svg + "</g></svg>";
 }
@@ -122,10 +123,12 @@ std::string beyond_scale(const std::vector<SeedHistory>& seeds, const ErrorScale
     if (!seed.lost && !(inside(error.x()) && inside(error.y()) && inside(error.z()))) ++beyond;
   }
   if (beyond == 0) return {};
+  const ImplantNouns& nouns = nouns_of(implant_of(seeds));
   return fmt::format(
-      "<p class=\"note\">Open marks at the edge stand for errors beyond the scale; {} {} one. The table of seeds has "
+      "<p class=\"note\">Open marks at the edge stand for errors beyond the scale; {} {} one. The table of {} has "
       "them.</p>",
-      beyond, beyond == 1 ? "seed has such" : "seeds have such");
+      beyond, beyond == 1 ? fmt::format("{} has such", nouns.source) : fmt::format("{} have such", nouns.sources),
+      nouns.sources);
 }
 
 }  // namespace

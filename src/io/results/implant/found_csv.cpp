@@ -56,7 +56,8 @@ std::string found_csv(const ImplantHistory& history, const FoundImplant& found) 
     text += seed.lost ? three_empty() : three_fields(seed.rest_mm);
     text +=
         matched ? three_fields(matched->found_mm) + three_fields(matched->error_mm()) : three_empty() + three_empty();
-    for (const Vec3& cause : seed.cause_mm) text += seed.lost ? three_empty() : three_fields(cause);
+    for (std::size_t cause = 0; cause < kSeedCauses; ++cause)
+      text += seed.lost ? three_empty() : three_fields(seed.cause_mm[cause]);
     text += matched ? three_fields(matched->remainder_mm) +
                           three_fields(matched->remainder_mm - comparison.matching.shift_mm)
                     : three_empty() + three_empty();

@@ -27,7 +27,7 @@ OrderedJson parts_json(const std::vector<PartErrors>& parts) {
 
 OrderedJson seed_json(const SeedHistory& seed, const ImplantHistory& history) {
   OrderedJson why;
-  for (std::size_t k = 0; k < kSeedCauses; ++k) why[to_string(static_cast<SeedCause>(k))] = list_of(seed.cause_mm[k]);
+  for (const SeedCause cause : causes_of(Implant::permanent)) why[to_string(cause)] = list_of(seed.by(cause));
   return {{"number", seed.number + 1},
           {"needle", history.needles[seed.needle].name},
           {"planned_mm", list_of(seed.planned_mm)},
@@ -40,6 +40,30 @@ OrderedJson seed_json(const SeedHistory& seed, const ImplantHistory& history) {
           {"lost", seed.lost},
           {"in_tissue", seed.in_tissue},
           {"why", why}};
+}
+
+/// @param dwell_s of the plan
+OrderedJson dwell_json(const SeedHistory& dwell, const ImplantHistory& history, double dwell_s) {
+  OrderedJson why;
+  for (const SeedCause cause : causes_of(Implant::temporary)) why[to_string(cause)] = list_of(dwell.by(cause));
+  const DwellAtPlanning then = dwell.at_planning.value_or(DwellAtPlanning{});
+  return {{"number", dwell.number + 1},
+          {"catheter", history.needles[dwell.needle].name},
+          {"dwell_s", dwell_s},
+          {"planned_mm", list_of(dwell.planned_mm)},
+          {"planning_room_mm", list_of(then.room_mm)},
+          {"planning_mm", list_of(then.tissue_mm)},
+          {"delivery_room_mm", list_of(dwell.dropped_mm)},
+          {"delivery_mm", list_of(dwell.rest_mm)},
+          {"axis", list_of(dwell.axis)},
+          {"error_mm", dwell.error_mm().norm()},
+          {"error_xyz_mm", list_of(dwell.error_mm())},
+          {"in_tissue", dwell.in_tissue},
+          {"why", why}};
+}
+
+OrderedJson shift_json(const std::optional<Vec3>& shift_mm) {
+  return shift_mm ? list_of(*shift_mm) : OrderedJson(nullptr);
 }
 
 OrderedJson needle_json(const NeedleHistory& needle) {
@@ -88,7 +112,11 @@ std::string implant_json(const ImplantOutcome& outcome) {
   const OrderedJson planned = OrderedJson::parse(dose_json(outcome.planned));
   const OrderedJson delivered = OrderedJson::parse(dose_json(outcome.delivered));
   OrderedJson seeds = OrderedJson::array(), needles = OrderedJson::array(), why = OrderedJson::array();
-  for (const SeedHistory& seed : history.seeds) seeds.push_back(seed_json(seed, history));
+  const bool temporary = implant_of(history.seeds) == Implant::temporary;
+  for (const SeedHistory& seed : history.seeds) {
+    seeds.push_back(temporary ? dwell_json(seed, history, outcome.planned.plan.sources[seed.number].dwell_s)
+                              : seed_json(seed, history));
+  }
   for (const NeedleHistory& needle : history.needles) needles.push_back(needle_json(needle));
   for (const CauseOfErrors& cause : causes_of_errors(history.seeds)) {
     why.push_back({{"cause", to_string(cause.cause)},
@@ -98,30 +126,36 @@ std::string implant_json(const ImplantOutcome& outcome) {
   OrderedJson spans = OrderedJson::array();
   for (const OtherImplant& other : outcome.spans) spans.push_back(other_json(other, outcome.found));
   const OrderedJson found = outcome.found ? OrderedJson::parse(dose_json(outcome.found->dose)) : OrderedJson(nullptr);
-  const OrderedJson json = {
-      {"version", version()},
-      {"scenario", outcome.scenario.name},
-      {"nodes", history.nodes},
-      {"implant",
-       {{"source", outcome.delivered.source.name},
-        {"prescription_Gy", delivered["prescription_Gy"]},
-        {"seeds", seeds},
-        {"needles", needles},
-        {"error", errors_json(seed_errors(history.seeds))},
-        {"error_by_needle", parts_json(errors_by_needle(history))},
-        {"error_by_third", parts_json(errors_by_third(history))},
-        {"why", why},
-        {"planned_dvh", planned["dvh"]},
-        {"delivered_dvh", delivered["dvh"]},
-        {"found_dvh", outcome.found ? found["dvh"] : OrderedJson(nullptr)},
-        {"goals",
-         goals_json(planned["goals"], delivered["goals"], outcome.found ? found["goals"] : OrderedJson(nullptr))},
-        {"oedema", outcome.oedema ? results::oedema_json(*outcome.oedema) : OrderedJson(nullptr)},
-        {"found", outcome.found ? results::found_json(history, *outcome.found) : OrderedJson(nullptr)},
-        {"before_compensation", outcome.before ? other_json(*outcome.before, outcome.found) : OrderedJson(nullptr)},
-        {"spans", spans},
-        {"assumptions", delivered["assumptions"]}}},
-      {"warnings", outcome.warnings}};
+  OrderedJson implant = {
+      {"source", outcome.delivered.source.name},
+      {"prescription_Gy", delivered["prescription_Gy"]},
+      {temporary ? "dwell_positions" : "seeds", seeds},
+      {temporary ? "catheters" : "needles", needles},
+      {"error", errors_json(seed_errors(history.seeds))},
+      {"error_by_needle", parts_json(errors_by_needle(history))},
+      {"error_by_third", parts_json(errors_by_third(history))},
+      {"why", why},
+      {"planned_dvh", planned["dvh"]},
+      {"delivered_dvh", delivered["dvh"]},
+      {"found_dvh", outcome.found ? found["dvh"] : OrderedJson(nullptr)},
+      {"goals",
+       goals_json(planned["goals"], delivered["goals"], outcome.found ? found["goals"] : OrderedJson(nullptr))},
+      {"oedema", outcome.oedema ? results::oedema_json(*outcome.oedema) : OrderedJson(nullptr)},
+      {"found", outcome.found ? results::found_json(history, *outcome.found) : OrderedJson(nullptr)},
+      {"before_compensation", outcome.before ? other_json(*outcome.before, outcome.found) : OrderedJson(nullptr)},
+      {"spans", spans},
+      {"assumptions", delivered["assumptions"]}};
+  if (temporary) {
+    implant["planning_to_delivery_s"] = outcome.scenario.procedure.planning_to_delivery_s;
+    implant["gland_at_planning_mm"] = shift_json(history.gland_at_planning_mm);
+    implant["gland_at_delivery_mm"] = shift_json(history.gland_at_delivery_mm);
+    implant["at_planning"] = outcome.at_planning ? other_json(*outcome.at_planning, {}) : OrderedJson(nullptr);
+  }
+  const OrderedJson json = {{"version", version()},
+                            {"scenario", outcome.scenario.name},
+                            {"nodes", history.nodes},
+                            {"implant", implant},
+                            {"warnings", outcome.warnings}};
   return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 

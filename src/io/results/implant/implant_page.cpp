@@ -15,6 +15,7 @@
 #include "implant/implant_data.hpp"
 #include "implant/implant_tables.hpp"
 #include "implant/implant_words.hpp"
+#include "implant/kind_words.hpp"
 #include "implant/oedema_section.hpp"
 #include "implant/procedure_facts.hpp"
 #include "report/assets.hpp"
@@ -48,7 +49,9 @@ AllDvh all_dvh(const ImplantOutcome& outcome) {
 
 /// The doses of the tables of goals and figures.
 std::vector<NamedDose> doses_of(const ImplantOutcome& outcome) {
-  std::vector<NamedDose> doses{{"Planned", &outcome.planned}, {"Delivered", &outcome.delivered}};
+  std::vector<NamedDose> doses{{"Planned", &outcome.planned}};
+  if (outcome.at_planning) doses.push_back({"At planning", &outcome.at_planning->delivered});
+  doses.push_back({"Delivered", &outcome.delivered});
   if (!outcome.found) return doses;
   doses.push_back({"Found", &outcome.found->dose});
   if (outcome.found->comparison.matching.shift_beyond_chance())
@@ -72,9 +75,11 @@ Result<std::string> implant_page(const ImplantOutcome& outcome) {
   const std::vector<std::string> colours = structure_colours(outcome.delivered.structures);
   const AllDvh dvh = all_dvh(outcome);
   const DvhTable* found = dvh.found ? &*dvh.found : nullptr;
-  const Slots slots{
+  const Implant implant = implant_of(history.seeds);
+  Slots slots{
       {"report", "implant report"},
-      {"kicker", "Simulation of a seed implant"},
+      {"kicker",
+       implant == Implant::temporary ? "Simulation of a temporary implant (HDR)" : "Simulation of a seed implant"},
       {"kind", "simulation"},
       {"title", html_escaped(outcome.scenario.name)},
       {"facts", html_prose(plan_line(outcome.planned))},
@@ -106,8 +111,8 @@ Result<std::string> implant_page(const ImplantOutcome& outcome) {
       {"report_of_found", found ? "; <a href=\"found/report.html\">the dose of the found seeds</a>" : ""},
       {"files_of_found", found ? " The match with the found seeds is in <code>found.csv</code>." : ""},
       {"seeds", seed_error_table(history)},
-      {"procedure", procedure_facts(outcome.scenario)},
-      {"seed_facts", seed_facts(outcome.scenario)},
+      {"procedure", procedure_facts(outcome.scenario, implant)},
+      {"seed_facts", seed_facts(outcome.scenario, implant)},
       {"tissue", tissue_facts(outcome.scenario, history.nodes)},
       {"plan", plan_facts(outcome.planned)},
       {"assumptions", sentence_list(outcome.delivered.assumptions)},
@@ -116,6 +121,7 @@ Result<std::string> implant_page(const ImplantOutcome& outcome) {
                         json_script_safe(implant_page_data(outcome, dvh.planned, found)) + "</script>\n"},
       {"js", script_safe(implant_js())},
   };
+  add_kind_words(slots, implant);
   return page_about_dose(implant_template(), slots);
 }
 

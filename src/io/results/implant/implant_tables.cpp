@@ -47,7 +47,9 @@ std::string place_cell(const Vec3& mm) {
 
 std::string remark_on(const SeedHistory& seed) {
   if (seed.lost) return "lost";
-  return seed.in_tissue ? "" : "no tissue was found where it was dropped";
+  return seed.in_tissue
+             ? ""
+             : (seed.at_planning ? "no tissue was found where it is" : "no tissue was found where it was dropped");
 }
 
 }  // namespace
@@ -55,10 +57,15 @@ std::string remark_on(const SeedHistory& seed) {
 std::string implant_tiles(const ImplantOutcome& outcome) {
   const SeedErrors errors = seed_errors(outcome.history.seeds);
   const std::size_t lost = outcome.history.seeds.size() - errors.seeds;
-  return figure_tile(millimetres(errors.mean_mm), "mean error of the seeds") +
-         figure_tile(millimetres(errors.p95_mm), "95 % of the seeds within") + target_tiles(outcome) +
-         figure_tile(fmt::format("{}<small>{} lost</small>", outcome.history.seeds.size(), lost), "seeds") +
-         figure_tile(fmt::format("{}", outcome.history.needles.size()), "needles");
+  const bool temporary = implant_of(outcome.history.seeds) == Implant::temporary;
+  const ImplantNouns& nouns = nouns_of(outcome.history);
+  return figure_tile(millimetres(errors.mean_mm), fmt::format("mean error of the {}", nouns.sources)) +
+         figure_tile(millimetres(errors.p95_mm), fmt::format("95 % of the {} within", nouns.sources)) +
+         target_tiles(outcome) +
+         figure_tile(temporary ? fmt::format("{}", outcome.history.seeds.size())
+                               : fmt::format("{}<small>{} lost</small>", outcome.history.seeds.size(), lost),
+                     nouns.sources) +
+         figure_tile(fmt::format("{}", outcome.history.needles.size()), nouns.needles);
 }
 
 std::string error_row(const std::string& name, const SeedErrors& errors) {
@@ -70,11 +77,11 @@ std::string error_row(const std::string& name, const SeedErrors& errors) {
 }
 
 std::string error_table(const ImplantHistory& history) {
-  std::string rows = error_row("all seeds", seed_errors(history.seeds));
+  const ImplantNouns& nouns = nouns_of(history);
+  std::string rows = error_row(fmt::format("all {}", nouns.sources), seed_errors(history.seeds));
   for (const PartErrors& third : errors_by_third(history)) rows += error_row(third.name, third.errors);
-  std::string head = text_heading("Part of the gland");
-  for (const char* name :
-       {"Seeds", "Mean distance [mm]", "95 % within [mm]", "Left [mm]", "Posterior [mm]", "Superior [mm]"})
+  std::string head = text_heading("Part of the gland") + figure_heading(capital(nouns.sources));
+  for (const char* name : {"Mean distance [mm]", "95 % within [mm]", "Left [mm]", "Posterior [mm]", "Superior [mm]"})
     head += figure_heading(name);
   return scrolled_table("scroll", "figures errors", head, rows);
 }
@@ -82,7 +89,8 @@ std::string error_table(const ImplantHistory& history) {
 std::string cause_meanings(const ImplantHistory& history) {
   std::string html;
   for (const CauseOfErrors& cause : causes_that_moved(history)) {
-    html += fmt::format("<dt>{}</dt><dd>{} {}</dd>", to_string(cause.cause), meaning_of(cause.cause),
+    html += fmt::format("<dt>{}</dt><dd>{} {}</dd>", to_string(cause.cause),
+                        meaning_of(cause.cause, implant_of(history.seeds)),
                         html_prose(fmt::format("Its mean size is {} mm.", fixed(cause.mean_mm, 2))));
   }
   return html;
@@ -90,9 +98,11 @@ std::string cause_meanings(const ImplantHistory& history) {
 
 std::string needle_table(const ImplantHistory& history) {
   const std::vector<PartErrors> errors = errors_by_needle(history);
-  std::string head = figure_heading("Order") + text_heading("Needle");
+  const ImplantNouns& nouns = nouns_of(history);
+  std::string head =
+      figure_heading("Order") + text_heading(capital(nouns.needle)) + figure_heading(capital(nouns.sources));
   for (const char* name :
-       {"Seeds", "Mean error [mm]", "Largest gland shift [mm]", "Peak force [N]", "Deflection [mm]", "Depth [mm]"})
+       {"Mean error [mm]", "Largest gland shift [mm]", "Peak force [N]", "Deflection [mm]", "Depth [mm]"})
     head += figure_heading(name);
   std::string rows;
   for (std::size_t k = 0; k < history.needles.size(); ++k) {
@@ -112,14 +122,19 @@ std::string seed_error_table(const ImplantHistory& history) {
   const std::vector<CauseOfErrors> causes = causes_that_moved(history);
   const bool remarks = std::any_of(history.seeds.begin(), history.seeds.end(),
                                    [](const SeedHistory& seed) { return !remark_on(seed).empty(); });
-  std::string head = figure_heading("No.") + text_heading("Needle") + figure_heading("Planned [mm]") +
-                     figure_heading("Dropped [mm]") + figure_heading("At rest [mm]") + figure_heading("Error [mm]");
+  const ImplantNouns& nouns = nouns_of(history);
+  const bool temporary = implant_of(history.seeds) == Implant::temporary;
+  std::string head = figure_heading("No.") + text_heading(capital(nouns.needle)) + figure_heading("Planned [mm]");
+  if (temporary) head += figure_heading("Tissue at planning [mm]");
+  head += figure_heading(temporary ? "In the room at delivery [mm]" : "Dropped [mm]") +
+          figure_heading(temporary ? "Tissue at delivery [mm]" : "At rest [mm]") + figure_heading("Error [mm]");
   for (const CauseOfErrors& cause : causes) head += figure_heading(fmt::format("by {} [mm]", to_string(cause.cause)));
   if (remarks) head += text_heading("Remark");
   std::string rows;
   for (const SeedHistory& seed : history.seeds) {
     rows += "<tr>" + figure_cell(fmt::format("{}", seed.number + 1)) + text_cell(history.needles[seed.needle].name) +
-            place_cell(seed.planned_mm) + place_cell(seed.dropped_mm) +
+            place_cell(seed.planned_mm) + (seed.at_planning ? place_cell(seed.at_planning->tissue_mm) : "") +
+            place_cell(seed.dropped_mm) +
             (seed.lost ? figure_cell("–") + figure_cell("–")
                        : place_cell(seed.rest_mm) + figure_cell(fixed(seed.error_mm().norm(), 2)));
     for (const CauseOfErrors& cause : causes)
@@ -127,7 +142,7 @@ std::string seed_error_table(const ImplantHistory& history) {
     if (remarks) rows += text_cell(remark_on(seed));
     rows += "</tr>";
   }
-  return fmt::format("<details><summary>All {} seeds</summary>{}</details>", history.seeds.size(),
+  return fmt::format("<details><summary>All {} {}</summary>{}</details>", history.seeds.size(), nouns.sources,
                      scrolled_table("scroll tall-table", "figures seeds-table", head, rows));
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 namespace stylet::results {
@@ -50,6 +51,32 @@ std::string shift_by_third(const ImplantHistory& history) {
                           : " Along the axis from inferior to superior it is " + list_in_words(parts) + ".";
 }
 
+/// How far dwell positions lie from their plan, and what happened between planning and delivery.
+std::string dwell_sentences(const ImplantOutcome& outcome) {
+  const ImplantHistory& history = outcome.history;
+  const SeedErrors errors = seed_errors(history.seeds);
+  std::string text = fmt::format(
+      "The plan has {} in {}, which stay until the delivery. At the delivery the dwell positions are in tissue that "
+      "lies {} mm from their planned places on average; 95 % of them within {} mm. ",
+      count_of(history.seeds.size(), "dwell position"), count_of(history.needles.size(), "catheter"),
+      fixed(errors.mean_mm, 1), fixed(errors.p95_mm, 1));
+  text += mean_shift(errors) + shift_by_third(history);
+  if (!outcome.at_planning) return text;
+  const SeedErrors then = seed_errors(outcome.at_planning->history.seeds);
+  double wait_mm = 0.0;
+  Vec3 mean = Vec3::Zero();
+  for (const CauseOfErrors& cause : causes_of_errors(history.seeds)) {
+    if (cause.cause != SeedCause::wait) continue;
+    wait_mm = cause.mean_mm;
+    mean = cause.mean_vector_mm;
+  }
+  return text + fmt::format(
+                    " On the images of the plan they were {} mm from it on average. In the {:g} s from there to the "
+                    "delivery they moved by {} mm on average against the tissue, on the whole {}.",
+                    fixed(then.mean_mm, 1), outcome.scenario.procedure.planning_to_delivery_s, fixed(wait_mm, 2),
+                    toward_text(mean.z(), 2));
+}
+
 std::string seed_sentences(const ImplantOutcome& outcome) {
   const ImplantHistory& history = outcome.history;
   const SeedErrors errors = seed_errors(history.seeds);
@@ -74,9 +101,9 @@ std::string cause_sentence(const ImplantHistory& history) {
   const auto largest =
       std::max_element(causes.begin(), causes.end(),
                        [](const CauseOfErrors& a, const CauseOfErrors& b) { return a.mean_mm < b.mean_mm; });
-  if (largest == causes.end()) return "No cause moved a seed.";
+  if (largest == causes.end()) return fmt::format("No cause moved a {}.", nouns_of(history).source);
   return fmt::format("The largest cause is {} ({} mm on average). {}", to_string(largest->cause),
-                     fixed(largest->mean_mm, 1), meaning_of(largest->cause));
+                     fixed(largest->mean_mm, 1), meaning_of(largest->cause, implant_of(history.seeds)));
 }
 
 /// A figure of the target in both doses.
@@ -125,16 +152,38 @@ std::string toward_text(double value_mm, std::size_t axis) {
          (value_mm < 0.0 ? kAgainst[axis] : kToward[axis]);
 }
 
-const char* meaning_of(SeedCause cause) {
+const ImplantNouns& nouns_of(Implant implant) {
+  static const ImplantNouns permanent{"seed", "seeds", "needle", "needles"};
+  static const ImplantNouns temporary{"dwell position", "dwell positions", "catheter", "catheters"};
+  return implant == Implant::temporary ? temporary : permanent;
+}
+
+const ImplantNouns& nouns_of(const ImplantHistory& history) { return nouns_of(implant_of(history.seeds)); }
+
+std::string capital(std::string noun) {
+  if (!noun.empty()) noun.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(noun.front())));
+  return noun;
+}
+
+const char* meaning_of(SeedCause cause, Implant implant) {
+  const bool temporary = implant == Implant::temporary;
   switch (cause) {
     case SeedCause::bend:
-      return "The needle was bent, or did not reach its depth, when the seed left it.";
+      return temporary ? "The catheter was bent, or did not reach its depth, when the images of the plan were taken."
+                       : "The needle was bent, or did not reach its depth, when the seed left it.";
     case SeedCause::motion:
-      return "The needle held the tissue displaced when the seed was dropped; the tissue has gone back since and has "
-             "taken the seed along.";
+      return temporary
+                 ? "The catheters held the tissue displaced when the images of the plan were taken, so the dwell "
+                   "position was in other tissue than planned."
+                 : "The needle held the tissue displaced when the seed was dropped; the tissue has gone back since "
+                   "and has taken the seed along.";
     case SeedCause::relaxation:
-      return "The tissue had crept under the needle when the seed was dropped; it has gone back since and has taken "
-             "the seed along.";
+      return temporary
+                 ? "The tissue had crept under the catheters when the images of the plan were taken."
+                 : "The tissue had crept under the needle when the seed was dropped; it has gone back since and has "
+                   "taken the seed along.";
+    case SeedCause::wait:
+      return "Tissue and catheter moved against each other between the images of the plan and the delivery.";
     case SeedCause::strand:
       return "The strand holds the seed at its distance from the other seeds of the needle.";
     case SeedCause::release:
@@ -155,17 +204,19 @@ std::vector<CauseOfErrors> causes_that_moved(const ImplantHistory& history) {
 std::string causes_left_out(const ImplantHistory& history) {
   const std::vector<CauseOfErrors> moved = causes_that_moved(history);
   std::vector<std::string> names;
-  for (std::size_t k = 0; k < kSeedCauses; ++k) {
-    const auto cause = static_cast<SeedCause>(k);
+  for (const SeedCause cause : causes_of(implant_of(history.seeds))) {
     if (std::none_of(moved.begin(), moved.end(), [&](const CauseOfErrors& c) { return c.cause == cause; }))
       names.emplace_back(to_string(cause));
   }
   if (names.empty()) return {};
-  return fmt::format("The picture leaves out {}, which moved no seed in this implant.", list_in_words(names));
+  return fmt::format("The picture leaves out {}, which moved no {} in this implant.", list_in_words(names),
+                     nouns_of(history).source);
 }
 
 std::string implant_story(const ImplantOutcome& outcome) {
-  std::string story = paragraph(seed_sentences(outcome) + " " + cause_sentence(outcome.history));
+  const bool temporary = implant_of(outcome.history.seeds) == Implant::temporary;
+  std::string story = paragraph((temporary ? dwell_sentences(outcome) : seed_sentences(outcome)) + " " +
+                                cause_sentence(outcome.history));
   const std::string dose = dose_sentences(outcome);
   return dose.empty() ? story : story + paragraph(dose);
 }

@@ -17,14 +17,27 @@ inline constexpr std::array<const char*, 3> kAgainst{"right", "anterior", "infer
 /// Colours of the thirds base, mid and apex. Marks of different shapes stand for them too.
 inline constexpr std::array<const char*, 3> kThirdColours{"#0072b2", "#00805d", "#b5179e"};
 
+/// What an implant is made of: seeds and needles, or dwell positions and catheters.
+struct ImplantNouns {
+  const char* source;
+  const char* sources;
+  const char* needle;
+  const char* needles;
+};
+const ImplantNouns& nouns_of(Implant implant);
+const ImplantNouns& nouns_of(const ImplantHistory& history);
+
+/// A noun at the start of a sentence or in a heading.
+std::string capital(std::string noun);
+
 /// A signed number with a decimal minus sign that is as wide as the plus sign; zero has no sign.
 std::string signed_number(double value, int digits);
 
 /// A signed length with its direction instead of a sign: "1.2 mm to inferior". @param axis 0 … 2
 std::string toward_text(double value_mm, std::size_t axis);
 
-/// What a cause means, as a sentence.
-const char* meaning_of(SeedCause cause);
+/// What a cause means in an implant of some kind, as a sentence.
+const char* meaning_of(SeedCause cause, Implant implant);
 
 /// The causes that moved a seed.
 std::vector<CauseOfErrors> causes_that_moved(const ImplantHistory& history);

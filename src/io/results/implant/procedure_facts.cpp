@@ -66,7 +66,25 @@ std::string oedema_text(const Scenario& scenario) {
 
 }  // namespace
 
-std::string procedure_facts(const Scenario& scenario) {
+namespace {
+
+/// How catheters go in and what is waited for.
+std::string catheter_facts(const Scenario& scenario) {
+  const Scenario::Procedure& procedure = scenario.procedure;
+  return definition("Technique", "catheters go in one after the other, their hubs are locked, and all stay") +
+         definition("Order of the catheters", order_text(procedure.order)) +
+         definition("Stabilising needles", stabilising_text(procedure.stabilising)) +
+         definition("Speed of insertion", fmt::format("{:g} mm/s", procedure.speed_mm_per_s)) +
+         definition("From the last catheter to the images of the plan", fmt::format("{:g} s", procedure.pause_s)) +
+         definition("From these images to the delivery", fmt::format("{:g} s", procedure.planning_to_delivery_s)) +
+         definition("From a catheter’s tip to its most distal dwell position",
+                    fmt::format("{:g} mm", procedure.catheter_tip_mm));
+}
+
+}  // namespace
+
+std::string procedure_facts(const Scenario& scenario, Implant implant) {
+  if (implant == Implant::temporary) return catheter_facts(scenario);
   const Scenario::Procedure& procedure = scenario.procedure;
   return definition("Technique", technique_text(procedure.technique)) +
          definition("Order of the needles", order_text(procedure.order)) +
@@ -80,7 +98,11 @@ std::string procedure_facts(const Scenario& scenario) {
                     procedure.plug_mm > 0.0 ? fmt::format("{:g} mm", procedure.plug_mm) : "none");
 }
 
-std::string seed_facts(const Scenario& scenario) {
+std::string seed_facts(const Scenario& scenario, Implant implant) {
+  if (implant == Implant::temporary) {
+    return definition("Dwell positions", "each stays at its distance from the tip of its catheter") +
+           definition("Oedema", "none but what the tissue’s creep is: the gland does not swell");
+  }
   const Scenario::Seed& seed = scenario.seed;
   return definition("Seeds", seed.stranded ? "stranded: the seeds of a needle keep their distances"
                                            : "loose: each seed moves with the tissue around it") +
