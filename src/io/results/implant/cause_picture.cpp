@@ -102,7 +102,7 @@ std::string cause_picture(const ImplantHistory& history) {
                        group.mean_mm[static_cast<Index>(axis)], false);
     top += 4 * kCauseLine + kCauseGap;
   }
-  return svg + fmt::format("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"middle\">Mean over all seeds [mm]</text></svg>",
+  return svg + fmt::format("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"middle\">Mean error [mm]</text></svg>",
                            kCauseLeft + kCauseWide / 2, bottom + 38);
 }
 
