@@ -117,6 +117,7 @@ DoseGrid empty_grid(const DosePlan& plan, std::span<const DoseStructure> structu
 std::vector<Stretch> stretches_of(const std::vector<SwollenTime>& times, bool alike) {
   if (!alike) return {Stretch{}};
   std::vector<Stretch> stretches;
+  stretches.reserve(times.size());
   for (const SwollenTime& time : times) stretches.push_back({time.share, time.factors.x()});
   return stretches;
 }
