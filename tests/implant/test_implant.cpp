@@ -194,6 +194,10 @@ TEST(Implant, in_creeping_tissue_has_a_positive_compliance_among_the_points_of_a
   const MatX wide = compliance.wide().block(3, 3, of_shafts, of_shafts);
   const Eigen::SelfAdjointEigenSolver<MatX> eigen(wide, Eigen::EigenvaluesOnly);
   EXPECT_GT(eigen.eigenvalues().minCoeff(), -1e-3 * eigen.eigenvalues().maxCoeff());
+  const double creeps = simulation.insertion().settings().creep.factor - 1.0;
+  ASSERT_GT(creeps, 0.0);
+  const MatX after_creep = compliance.matrix().block(3, 3, of_shafts, of_shafts) + creeps * wide;
+  EXPECT_EQ(Eigen::LLT<MatX>(after_creep).info(), Eigen::Success) << "the tissue does not come to rest";
 }
 
 TEST(Implant, keeps_the_steps_of_each_needle_and_its_shape_where_it_leaves_seeds) {
