@@ -18,8 +18,9 @@ SeedHistory seed(std::size_t number, const Vec3& planned, const Vec3& error, std
 }
 
 TEST(SeedErrors, are_those_that_one_computes_by_hand) {
-  const std::vector<SeedHistory> seeds{seed(0, Vec3::Zero(), Vec3(3, 0, 4)), seed(1, Vec3::Zero(), Vec3(-3, 0, 0)),
-                                       seed(2, Vec3::Zero(), Vec3(0, 0, 1))};
+  std::vector<SeedHistory> seeds;
+  for (const Vec3& error : {Vec3(3, 0, 4), Vec3(-3, 0, 0), Vec3(0, 0, 1)})
+    seeds.push_back(seed(seeds.size(), Vec3::Zero(), error));
   const SeedErrors e = seed_errors(seeds);
   EXPECT_EQ(e.seeds, 3U);
   EXPECT_DOUBLE_EQ(e.mean_mm, 3.0);
