@@ -13,7 +13,7 @@ TissueAt tissue_of_capsule(const Vec3& centre, const Vec3& axis, double length_m
   TissueAt tissue{.rest_mm = centre, .axis = axis};
   if (const auto at = material_at(centre, displacement)) {
     tissue.is_known = true;
-    // What the nearest material point misses of the place counts as motion of the tissue.
+    // The distance by which the nearest material point misses the place counts as motion of the tissue.
     tissue.rest_mm = centre - at->moved.whole;
     tissue.lasting_mm = at->moved.lasting;
   }

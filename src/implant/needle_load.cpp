@@ -64,7 +64,7 @@ Vec3 direction_of(const std::vector<Vec3>& points, const Vec3& centre) {
   return superior(eigen.eigenvectors().col(2));
 }
 
-/// What a plan calls its needles and what is in them, in messages.
+/// The words of messages for the needles of a plan and for the seeds or dwell positions in them.
 struct PlanWords {
   const char* needle;
   const char* seeds;

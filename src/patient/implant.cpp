@@ -86,7 +86,7 @@ ImplantHistory without_records(ImplantHistory history) {
   return history;
 }
 
-/// What is asked for beside a temporary implant and only permanent ones have.
+/// Refuses settings that only permanent implants have, where the plan is a temporary implant.
 Result<> check_temporary_settings(const ImplantSettings& settings, const DosePlan& plan) {
   if (settings.compensate > 0) {
     return input_error(plan.file,

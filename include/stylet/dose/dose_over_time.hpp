@@ -7,7 +7,7 @@
 
 namespace stylet {
 
-/// What a structure has received by a moment after the implantation.
+/// The dose that a structure has received by a moment after the implantation.
 struct DoseMoment {
   double days = 0.0;                     ///< [d] after the implantation; infinity: until the sources have decayed
   double share = 0.0;                    ///< 0 … 1, of their dose that the sources have given by then

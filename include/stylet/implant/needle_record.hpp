@@ -21,8 +21,8 @@ struct NeedleShape {
 };
 inline constexpr int kNeedleShapePoints = 41;
 
-/// What one needle of an implant did. All times are simulated times since the first needle of its group went in:
-/// needles of a group are in the tissue together, and stabilising needles belong to each group.
+/// The motion, forces and shapes of one needle of an implant. All times are simulated times since the first needle of
+/// its group went in: needles of a group are in the tissue together, and stabilising needles belong to each group.
 struct NeedleRecord {
   std::size_t group = 0;            ///< number of its group, in the order in which the groups were simulated
   std::vector<Step> steps;          ///< all of them; step_us is the processor time

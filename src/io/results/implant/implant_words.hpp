@@ -17,7 +17,7 @@ inline constexpr std::array<const char*, 3> kAgainst{"right", "anterior", "infer
 /// Colours of the thirds base, mid and apex. Marks of different shapes stand for them too.
 inline constexpr std::array<const char*, 3> kThirdColours{"#0072b2", "#00805d", "#b5179e"};
 
-/// What an implant is made of: seeds and needles, or dwell positions and catheters.
+/// The nouns for the parts of an implant: seeds and needles, or dwell positions and catheters.
 struct ImplantNouns {
   const char* source;
   const char* sources;
@@ -36,7 +36,7 @@ std::string signed_number(double value, int digits);
 /// A signed length with its direction instead of a sign: "1.2 mm to inferior". @param axis 0 … 2
 std::string toward_text(double value_mm, std::size_t axis);
 
-/// What a cause means in an implant of some kind, as a sentence.
+/// A sentence that explains a cause of errors in a permanent or a temporary implant.
 const char* meaning_of(SeedCause cause, Implant implant);
 
 /// The causes that moved a seed.

@@ -7,7 +7,7 @@
 
 #include <string>
 
-/// What the swelling of the gland does to the dose of the target in the course of time.
+/// The section of the report on the dose of the target while the gland swells, as words, picture and JSON.
 namespace stylet::results {
 
 /// The section of the page, as HTML: sentences, and over the days since the implant the width of the gland, the
