@@ -129,6 +129,17 @@ std::string summary_text(const Summary& summary) {
                           "deepest point",
                           error.norm(), error.x(), error.y(), error.z()));
   }
+  if (summary.in_place) {
+    const NeedlesInPlace& held = *summary.in_place;
+    std::string text = fmt::format("{}", fmt::join(held.holes, ", "));
+    if (held.shift_mm && held.shift_max_mm) {
+      text += fmt::format("; they had moved the gland by {:.2f} mm before, the needle moved it further by {:.2f} mm",
+                          held.shift_mm->norm(), held.shift_max_mm->norm());
+    }
+    if (held.tip_error_mm)
+      text += fmt::format("; tip error from the tissue as they hold it: {:.2f} mm", held.tip_error_mm->norm());
+    facts.add("needles in place", text);
+  }
   facts.add("tip deflection", fmt::format("at most {:.2f} mm", summary.tip_deflection_mm));
   facts.add("balance", fmt::format("force {:.1e}, torque {:.1e} (relative)", summary.residual_force_balance,
                                    summary.residual_torque_balance));

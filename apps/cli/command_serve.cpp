@@ -71,20 +71,32 @@ Result<serve::LoadedCase> load_implant(const fs::path& file, const std::vector<s
 Result<serve::CaseSource> case_of(const fs::path& file, const ServeArguments& arguments, Console& console) {
   std::string title = file.stem().string();
   bool has_plan = false;
+  std::vector<std::string> settings = arguments.settings;
   if (!is_hdf5_file(file) && !is_meant_as_model(file)) {
     const Result<Scenario> scenario = read_scenario(file, arguments.settings);
     if (!scenario) return scenario.error();
     title = scenario->name;
     has_plan = scenario->insertions.empty() && !scenario->plan.file.empty();
+    if (!scenario->procedure.stabilising.empty()) {
+      console.warn(fmt::format("{}: the live page holds one needle, so the needles of procedure.stabilising stay out.",
+                               file.string()));
+      settings.emplace_back("procedure.stabilising=[]");
+    }
   }
   return serve::CaseSource{
       title,
-      [file, has_plan, &console, settings = arguments.settings,
-       cache = ModelCache(arguments.models, {models_beside_program()})](
+      [file, has_plan, &console, settings, cache = ModelCache(arguments.models, {models_beside_program()})](
           const Progress& progress) -> Result<serve::LoadedCase> {
         if (has_plan) return load_implant(file, settings, cache, console, progress);
         auto prepared = prepare_model_file(file.string(), settings, progress, &cache);
         if (!prepared) return prepared.error();
+        if (!prepared->model->staying().empty()) {
+          return input_error(
+              file.string(),
+              "the saved model has needles in place (procedure.stabilising), and the live page holds one "
+              "needle",
+              "Give its scenario, or prepare the model with --set procedure.stabilising=[]");
+        }
         if (!prepared->not_kept.empty())
           console.warn("The model was not stored in the cache, so the next start takes as long: " + prepared->not_kept);
         for (const std::string& warning : prepared->warnings()) console.warn(warning);

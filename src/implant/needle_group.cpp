@@ -200,6 +200,7 @@ Result<GroupOutcome> simulate_group(const std::vector<PlannedNeedle>& staying,
   all.insert(all.end(), needles.begin(), needles.end());
   scenario.insertions.clear();
   for (const PlannedNeedle& needle : all) scenario.insertions.push_back(needle.plan);
+  scenario.procedure.stabilising.clear();  // they are among the insertions
   GroupOutcome out;
   const double start = wall_s();
   auto compiled = Model::compile(

@@ -7,12 +7,7 @@
 
 namespace stylet {
 
-namespace {
-
-/// Tip [mm] LPS of a rigid straight needle on this base.
 Vec3 rigid_tip(const Pose& base, double length_mm) { return base.origin + length_mm * (base.rotation * Vec3::UnitZ()); }
-
-}  // namespace
 
 BaseSteps planned_steps(const Model& model, const PlannedInsertion& insertion) {
   const long step_ns = std::max(1L, std::lround(model.scenario().run.dt_ms * 1e6));

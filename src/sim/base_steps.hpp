@@ -16,6 +16,9 @@ struct BaseSteps {
   std::function<double(long k)> dt_s;
 };
 
+/// Tip [mm] LPS of a rigid straight needle on this base.
+Vec3 rigid_tip(const Pose& base, double length_mm);
+
 /// The steps of a planned insertion with the time step of the model's scenario.
 /// @param insertion must outlive the result
 BaseSteps planned_steps(const Model& model, const PlannedInsertion& insertion);

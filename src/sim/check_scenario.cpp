@@ -69,6 +69,29 @@ Result<> check_insertion(const Scenario& s, std::size_t number, const ScenarioPl
   return Ok{};
 }
 
+/// Holes that the template has, each taken by one needle.
+Result<> check_stabilising(const Scenario& s, const ScenarioPlace& place) {
+  for (const std::string& hole : s.procedure.stabilising) {
+    const auto offset = s.grid.offset_mm(hole);
+    if (!offset) {
+      return input_error(place("procedure.stabilising"),
+                         fmt::format("procedure.stabilising names \"{}\": {}", hole, offset.error().what),
+                         offset.error().cure);
+    }
+    for (std::size_t i = 0; i < s.insertions.size(); ++i) {
+      if (!s.insertions[i].hole) continue;
+      const auto own = s.grid.offset_mm(*s.insertions[i].hole);
+      if (!own || *own != *offset) continue;
+      return input_error(place(fmt::format("insertion[{}].hole", i)),
+                         fmt::format("insertion[{}].hole = \"{}\" is taken: procedure.stabilising leaves a needle in "
+                                     "this hole",
+                                     i, *s.insertions[i].hole),
+                         "Choose another hole, or take this one out of procedure.stabilising");
+    }
+  }
+  return Ok{};
+}
+
 }  // namespace
 
 Result<> check_scenario(const Scenario& s, const ScenarioPlace& place) {
@@ -89,13 +112,7 @@ Result<> check_scenario(const Scenario& s, const ScenarioPlace& place) {
                          "Lower the sliding friction or raise the static friction");
     }
   }
-  for (const std::string& hole : s.procedure.stabilising) {
-    if (const auto offset = s.grid.offset_mm(hole); !offset) {
-      return input_error(place("procedure.stabilising"),
-                         fmt::format("procedure.stabilising names \"{}\": {}", hole, offset.error().what),
-                         offset.error().cure);
-    }
-  }
+  if (Result<> checked = check_stabilising(s, place); !checked) return checked;
   const bool several = !s.procedure.stabilising.empty() || s.procedure.together != NeedlesTogether::one;
   if (several && (s.coupling.solver != Solver::coupled || s.coupling.engine != Engine::condensed)) {
     return input_error(place("procedure.together"),

@@ -62,7 +62,31 @@ class Gland {
   Eigen::AlignedBox3d extent_;  ///< [mm] bounding box of the target
 };
 
+/// Whether a needle is in place in the hole at this offset; holes have several spellings.
+bool is_taken(const TemplateGrid& grid, const std::vector<std::string>& in_place, const std::array<double, 2>& offset) {
+  return std::any_of(in_place.begin(), in_place.end(), [&](const std::string& hole) {
+    const auto its = grid.offset_mm(hole);
+    return its && *its == offset;
+  });
+}
+
 }  // namespace
+
+HoleEffect effect_of(const HoleRow& row) {
+  if (!row.prediction) return {};
+  if (const auto& held = row.prediction->in_place)
+    return {held->shift_at_break_mm, held->shift_max_mm, held->tip_error_mm};
+  return {row.prediction->shift_at_break_mm, row.prediction->shift_max_mm, row.prediction->tip_error_mm};
+}
+
+const NeedlesInPlace* needles_in_place(const HoleMap& map) {
+  const HoleRow* best = nullptr;
+  for (const HoleRow& row : map.holes) {
+    if (!row.prediction || !row.prediction->in_place) continue;
+    if (best == nullptr || row.hole == map.planned) best = &row;
+  }
+  return best == nullptr ? nullptr : &*best->prediction->in_place;
+}
 
 const char* to_string(Spared structure) {
   switch (structure) {
@@ -116,6 +140,7 @@ Result<HoleMap> map_ways(const Model& model, const PlanOfHole& plan_of, const st
   map.rows = grid.rows;
   map.pitch_mm = grid.pitch_mm;
   map.planned = model.scenario().insertions.front().hole.value_or("");
+  map.in_place = model.scenario().procedure.stabilising;
   for (auto row = grid.rows.rbegin(); row != grid.rows.rend(); ++row) {
     for (const std::string& column : grid.columns) {
       HoleRow line;
@@ -128,6 +153,11 @@ Result<HoleMap> map_ways(const Model& model, const PlanOfHole& plan_of, const st
       }
       line.left_mm = (*offset)[0];
       line.anterior_mm = (*offset)[1];
+      if (is_taken(grid, map.in_place, *offset)) {
+        line.failed = "A needle is in place in this hole.";
+        map.holes.push_back(std::move(line));
+        continue;
+      }
       const auto planned = plan_insertion(model, plan_of(line.hole), "hole " + line.hole);
       if (!planned) {
         line.failed = planned.error().what;

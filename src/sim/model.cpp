@@ -11,6 +11,7 @@
 #include "stylet/needle/guided.hpp"
 #include "stylet/needle/make_needle.hpp"
 #include "stylet/sim/cutting_lag.hpp"
+#include "stylet/sim/hole_map.hpp"
 
 #include <fmt/format.h>
 
@@ -119,6 +120,31 @@ Result<PlannedInsertion> follow(const std::vector<MotionSample>& motion, std::si
         "Use a longer needle (needle.length_mm), a smaller template.distance_mm, or template.guide = false");
   }
   return recorded;
+}
+
+/// The needles that stay: each through its hole as the first insertion would go through it, without coming out.
+Result<std::vector<PlannedInsertion>> plan_staying(const Scenario& scenario, const Locator& locator,
+                                                   const std::vector<int>& target, const std::string& where) {
+  std::vector<PlannedInsertion> staying;
+  for (const std::string& hole : scenario.procedure.stabilising) {
+    InsertionPlan plan = plan_through(scenario.insertions.front(), hole);
+    plan.retract = false;
+    auto planned = plan_insertion(plan, 0, scenario, locator, target, where);
+    if (!planned) {
+      Error error = planned.error();
+      error.where = fmt::format("{}, procedure.stabilising, hole {}", where, hole);
+      return error;
+    }
+    staying.push_back(std::move(*planned));
+  }
+  return staying;
+}
+
+std::vector<PlannedInsertion> all_of(const std::vector<PlannedInsertion>& own,
+                                     const std::vector<PlannedInsertion>& staying) {
+  std::vector<PlannedInsertion> all = own;
+  all.insert(all.end(), staying.begin(), staying.end());
+  return all;
 }
 
 /// Displacement nodes of some elements, ascending.
@@ -268,9 +294,15 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
                                  : plan_insertion(scenario.insertions[i], i, scenario, locator, model->target_, where);
       if (!planned) return planned.error();
       insertions.push_back(std::move(*planned));
-      entries.push_back(insertions.back().entry);
-      directions.push_back(insertions.back().direction);
     }
+    auto staying = plan_staying(scenario, locator, model->target_, where);
+    if (!staying) return staying.error();
+    model->insertions_ = {std::move(insertions), *std::move(staying)};
+  }
+  const std::vector<PlannedInsertion> all = all_of(model->insertions_.own, model->insertions_.staying);
+  for (const PlannedInsertion& insertion : all) {
+    entries.push_back(insertion.entry);
+    directions.push_back(insertion.direction);
   }
   auto supports = find_supports(mesh, topology, scenario.fixed, model->target_, entries, directions);
   if (!supports) return named(supports.error(), where);
@@ -295,7 +327,7 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
     }
   }
 
-  const Corridor corridor = corridor_of(mesh, insertions, scenario.coupling);
+  const Corridor corridor = corridor_of(mesh, all, scenario.coupling);
   model->corridor_mm_ = std::max(0.0, corridor.radius_mm);
   const bool near_field = model->coupling_.method == CouplingSettings::Method::near_field;
   const bool condensed = model->coupling_.engine == CouplingSettings::Engine::condensed;
@@ -333,7 +365,6 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
   report(progress, "compliance", 0.0);
   model->store_ = std::make_shared<ComplianceStore>(
       model->tissue_, known ? std::exchange(known->store, {}) : model->tissue_->compliance_of_corridor(progress));
-  model->insertions_ = std::move(insertions);
   if (!condensed) {
     const double dofs = model->tissue_->free_dofs() + 3.0 * model->coupling_.capacity;
     const double gigabytes = 2.0 * dofs * dofs * sizeof(double) * 1e-9;  // two copies: undeformed and current mesh
@@ -357,7 +388,7 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
     model->near_field_.kernel = std::move(kernel);
   }
   if (knows_wide(model->coupling_, model->laws_)) {
-    const std::vector<NeedleWay> ways = ways_of(model->insertions_);
+    const std::vector<NeedleWay> ways = ways_of(all);
     if (known && known->spread.size() > 0) {
       model->near_field_.spread = SpreadCompliance::of(ways, std::move(known->spread));
       if (!model->near_field_.spread)

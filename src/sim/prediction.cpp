@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/sim/prediction.hpp"
 
-#include "base_steps.hpp"
+#include "needles_in_place.hpp"
 #include "stylet/core/flush_denormals.hpp"
 #include "stylet/sim/gland_watch.hpp"
 #include "stylet/sim/harms.hpp"
@@ -64,7 +64,14 @@ Result<Prediction> predict(const std::shared_ptr<const Model>& model, KnownTarge
     gland.emplace(names_of_target(*model));
   }
 
-  Simulation simulation(model);
+  Simulation simulation(model, needles_of(*model));
+  auto remarks_in_place = put_in_staying_needles(simulation, progress);
+  if (!remarks_in_place) return remarks_in_place.error();
+  std::optional<BesideNeedles> beside;
+  if (!model->staying().empty()) {
+    beside.emplace(simulation, target ? &*target : nullptr, names_of_target(*model), motion.base(deepest),
+                   *std::move(remarks_in_place));
+  }
   UnbrokenSurface unbroken;
   std::vector<Event> events;
   long without_balance = 0;
@@ -79,6 +86,7 @@ Result<Prediction> predict(const std::shared_ptr<const Model>& model, KnownTarge
     if (gland) {
       const TargetMotion::Moment now = target->now(simulation.insertion());
       gland->add(step, simulation.new_events(), now.motion, now.at_rest, k == deepest);
+      if (beside) beside->add(step, simulation.new_events(), now.motion, now.at_rest, k == deepest);
     }
     if (k % kReportEvery == 0)
       report(progress, "inserting " + insertion.name, static_cast<double>(k) / static_cast<double>(deepest));
@@ -91,6 +99,7 @@ Result<Prediction> predict(const std::shared_ptr<const Model>& model, KnownTarge
     result.shift_max_mm = moved.shift_max_mm;
   }
   result.tip_error_mm = tip_error_mm(simulation.insertion(), simulation.last_step());
+  if (beside) result.in_place = beside->result(result.tip_error_mm);
   result.remarks = harms(events);
   if (auto warning = unbroken.warning()) result.remarks.push_back(std::move(*warning));
   if (without_balance > 0) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/sim/run.hpp"
 
-#include "base_steps.hpp"
+#include "needles_in_place.hpp"
 #include "stylet/core/flush_denormals.hpp"
 #include "stylet/core/version.hpp"
 #include "stylet/sim/gland_watch.hpp"
@@ -38,7 +38,7 @@ double quantile(const std::vector<double>& sorted, double q) {
 class Runner {
  public:
   Runner(const std::shared_ptr<const Model>& model, RunObserver& observer, const Progress& progress)
-      : model_(model), simulation_(model), observer_(observer), progress_(progress) {
+      : model_(model), simulation_(model, needles_of(*model)), observer_(observer), progress_(progress) {
     summary_.version = version();
     summary_.scenario = model->scenario().name;
     summary_.nodes = model->mesh().node_count();
@@ -50,6 +50,7 @@ class Runner {
     const auto& insertions = model_->insertions();
     for (const PlannedInsertion& insertion : insertions) total_s_ += insertion.motion.duration_s();
     choose_frames();
+    if (Result<> ready = put_in_place(); !ready) return ready.error();
     for (std::size_t i = 0; i < insertions.size(); ++i) {
       if (auto done = one(insertions[i], planned_steps(*model_, insertions[i])); !done) return done.error();
       if (i + 1 < insertions.size() && simulation_.last_step().tip_state != TipState::air) {
@@ -70,11 +71,21 @@ class Runner {
     motion.dt_s = [&all](long k) { return all.at(k - 1).dt_s; };
     total_s_ = motion.duration_s;
     choose_frames();
+    if (Result<> ready = put_in_place(); !ready) return ready.error();
     if (auto done = one(model_->insertions().front(), motion); !done) return done.error();
     return sum_up();
   }
 
  private:
+  Result<> put_in_place() {
+    const FlushDenormals flush;  // as the insertions
+    auto remarks = put_in_staying_needles(simulation_, progress_);
+    if (!remarks) return remarks.error();
+    remarks_in_place_ = *std::move(remarks);
+    summary_.warnings.insert(summary_.warnings.end(), remarks_in_place_.begin(), remarks_in_place_.end());
+    return Ok{};
+  }
+
   void choose_frames() {
     const auto& output = model_->scenario().output;
     const double by_count = total_s_ / std::max(1, output.max_frames);
@@ -113,6 +124,11 @@ class Runner {
       if (auto ready = prepare_target_motion(); !ready) return ready;
       gland.emplace(target_names());
     }
+    std::optional<BesideNeedles> beside;
+    if (!model_->staying().empty()) {
+      beside.emplace(simulation_, target_motion_ ? &*target_motion_ : nullptr, target_names(), motion.base(deepest),
+                     remarks_in_place_);
+    }
     if (auto r = take_frame("before"); !r) return r;
     double next_frame = start + frame_every_s_;  // the frame "before" is the first of the series
     for (long k = 1; k <= motion.count; ++k) {
@@ -129,8 +145,14 @@ class Runner {
         const TargetMotion::Moment now = target_motion_->now(simulation_.insertion());
         summary_.gland_path.push_back(
             gland->add(record, simulation_.new_events(), now.motion, now.at_rest, k == deepest));
+        if (beside) beside->add(record, simulation_.new_events(), now.motion, now.at_rest, k == deepest);
       }
-      if (k == deepest) keep_largest(tip_error_mm(simulation_.insertion(), simulation_.last_step()));
+      if (k == deepest) {
+        const std::optional<Vec3> tip_error = tip_error_mm(simulation_.insertion(), simulation_.last_step());
+        if (keep_largest(tip_error) || !summary_.in_place) {
+          if (beside) summary_.in_place = beside->result(tip_error);
+        }
+      }
       std::string label;
       for (const Event& event : simulation_.new_events()) {
         summary_.events.push_back(event);
@@ -157,9 +179,12 @@ class Runner {
     if (!shifts.empty() && shifts.back().largest_mm >= summary_.target_shift_max_mm) summary_.gland = motion;
   }
 
-  void keep_largest(const std::optional<Vec3>& tip_error) {
-    if (!tip_error) return;
-    if (!summary_.tip_error_mm || tip_error->norm() > summary_.tip_error_mm->norm()) summary_.tip_error_mm = tip_error;
+  /// @return whether it is the largest so far
+  bool keep_largest(const std::optional<Vec3>& tip_error) {
+    if (!tip_error) return false;
+    if (summary_.tip_error_mm && tip_error->norm() <= summary_.tip_error_mm->norm()) return false;
+    summary_.tip_error_mm = tip_error;
+    return true;
   }
 
   [[nodiscard]] std::vector<std::string> target_names() const {
@@ -266,6 +291,7 @@ class Runner {
   double total_s_ = 0.0;
   double frame_every_s_ = 0.0;
   std::vector<double> step_us_;
+  std::vector<std::string> remarks_in_place_;
   static constexpr std::size_t kFlags = 8;  ///< number of values of Step::Flag
   std::array<long, kFlags> flag_counts_{};
   Summary summary_;

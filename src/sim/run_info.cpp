@@ -152,10 +152,16 @@ RunInfo Model::info(std::size_t insertion) const {
   info.needle_length_mm = scenario_.needle.length_mm;
   info.target_regions = target_;
   info.supports = supports_.description;
+  if (!staying().empty()) {
+    info.supports.push_back(
+        fmt::format("Needles are in place in the {} {} (procedure.stabilising). They went in before, their hubs are "
+                    "locked, and they hold the tissue by friction.",
+                    staying().size() == 1 ? "hole" : "holes", fmt::join(scenario_.procedure.stabilising, ", ")));
+  }
   info.warnings = warnings_;
-  if (insertion < insertions_.size()) {
-    info.entry_mm = insertions_[insertion].entry;
-    info.direction = insertions_[insertion].direction;
+  if (insertion < insertions().size()) {
+    info.entry_mm = insertions()[insertion].entry;
+    info.direction = insertions()[insertion].direction;
   }
   for (std::size_t r = 0; r < mesh().regions.size(); ++r)
     add_tissue(info.parameters, mesh().regions[r], scenario_.tissue_model.preset, tissue_parameters_[r],

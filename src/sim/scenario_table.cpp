@@ -305,11 +305,12 @@ void describe_implant(ScenarioEntries& keys) {
               "template go in before the first of them drops its seeds; all = all needles of the plan; the catheters "
               "of a temporary implant are always together",
               [](auto& s, const Slot&) { return &s.procedure.together; });
-  keys.texts("procedure.stabilising", 0,
-             "template holes of needles without seeds, which go in first, as deep as the deepest needle of the plan, "
-             "and stay to hold the gland",
-             [](auto& s, const Slot&) { return &s.procedure.stabilising; },
-             {.standard = "[]", .example = "[\"C3\", \"E3\"]"});
+  keys.texts(
+      "procedure.stabilising", 0,
+      "template holes of needles without seeds, which go in first and stay to hold the gland; with a plan they go "
+      "as deep as its deepest needle, in stylet insert each goes in as the first insertion would through its "
+      "hole",
+      [](auto& s, const Slot&) { return &s.procedure.stabilising; }, {.standard = "[]", .example = "[\"C3\", \"E3\"]"});
   keys.number("procedure.speed_mm_per_s", "mm/s", 0.1, 1000, "speed of a needle's base on the way in",
               [](auto& s, const Slot&) { return &s.procedure.speed_mm_per_s; });
   keys.number("procedure.pause_s", "s", 0, 3600,

@@ -91,6 +91,11 @@ ComplianceSupply::Settings Simulation::supply_settings() const {
           .spare_nodes = model_->coupling().spare_nodes};
 }
 
+void Simulation::start_clock() {
+  time_ns_ = 0;
+  step_.time_s = 0.0;
+}
+
 void Simulation::prepare() { insertion_.prepare(std::min(kPrepare_mm, kPrepareShare * model_->corridor_mm())); }
 
 void Simulation::add_event(EventKind kind, double force_N, int region) {

@@ -22,6 +22,11 @@ extern "C" stylet_rt_status stylet_rt_model_load(const char* path, const char* c
     }
     const auto loaded = stylet::load_model(path, {}, all);
     if (!loaded) return text.of(loaded.error());
+    if (!(*loaded)->staying().empty()) {
+      return text.of(stylet::input_error(
+          path, "the model has needles in place (procedure.stabilising), and the loop holds one needle only",
+          "Prepare the model with --set procedure.stabilising=[]"));
+    }
     *model = stylet::rt::make_handle(*loaded);
     return STYLET_RT_OK;
   });

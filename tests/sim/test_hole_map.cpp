@@ -182,6 +182,127 @@ TEST(HolePrediction, is_that_of_the_run_with_this_hole) {
   EXPECT_NE(map->holes[0].prediction->tip_error_mm, map->holes[1].prediction->tip_error_mm) << "holes differ";
 }
 
+/// The template with needles in place to both sides of the middle.
+Scenario scenario_beside_needles() {
+  Scenario s = scenario_with_template();
+  s.grid.rows = {"2"};
+  s.grid.columns = {"A", "B", "C", "D"};
+  s.grid.pitch_mm = 6.0;
+  s.insertions[0].hole = "C2";
+  s.insertions[0].speed_mm_per_s = 80.0;
+  s.insertions[0].depth_mm = 30.0;
+  s.procedure.stabilising = {"B2", "D2"};
+  return s;
+}
+
+TEST(HoleMap, says_which_holes_needles_are_in_place_in_and_gives_no_figures_for_these) {
+  const HoleMap map = ways_of(scenario_beside_needles());
+  EXPECT_EQ(map.in_place, (std::vector<std::string>{"B2", "D2"}));
+  for (const HoleRow& row : map.holes) {
+    const bool taken = row.hole == "B2" || row.hole == "D2";
+    EXPECT_EQ(!row.failed.empty(), taken) << row.hole;
+    EXPECT_EQ(row.depth_mm > 0.0, !taken) << row.hole;
+  }
+  EXPECT_EQ(needles_in_place(map), nullptr) << "nothing is predicted yet";
+}
+
+TEST(HolePrediction, beside_needles_in_place_is_that_of_the_run_with_this_hole) {
+  const Scenario s = scenario_beside_needles();
+  const auto model = compiled(s);
+  ASSERT_EQ(model->staying().size(), 2U);
+  auto map = map_ways(*model, through_each(s.insertions[0]), "case.toml");
+  ASSERT_TRUE(map);
+  predict_holes(model, through_each(s.insertions[0]), *map);
+  int predicted = 0;
+  for (const HoleRow& row : map->holes) {
+    if (row.hole == "B2" || row.hole == "D2") continue;
+    ASSERT_TRUE(row.prediction && row.prediction->in_place) << row.failed;
+    ++predicted;
+    Scenario other = s;
+    other.insertions[0].hole = row.hole;
+    const Finished run(compiled(other));
+    ASSERT_TRUE(run.summary.gland && run.summary.tip_error_mm && run.summary.in_place);
+    const NeedlesInPlace& held = *row.prediction->in_place;
+    const NeedlesInPlace& of_run = *run.summary.in_place;
+    EXPECT_EQ(held.holes, s.procedure.stabilising);
+    expect_near(row.prediction->shift_max_mm.value(), run.summary.gland->shift_max_mm);
+    expect_near(row.prediction->tip_error_mm.value(), *run.summary.tip_error_mm);
+    expect_near(held.shift_mm.value(), of_run.shift_mm.value());
+    expect_near(held.shift_max_mm.value(), of_run.shift_max_mm.value());
+    expect_near(held.tip_error_mm.value(), of_run.tip_error_mm.value());
+    expect_near(effect_of(row).tip_error_mm.value(), held.tip_error_mm.value());
+    // Time counts from the moment when the needles are in place, and their steps are not recorded.
+    EXPECT_NEAR(run.kept.steps.front().time_s, 1e-3 * s.run.dt_ms, 1e-12);
+  }
+  EXPECT_EQ(predicted, 2);
+  ASSERT_NE(needles_in_place(*map), nullptr);
+  EXPECT_EQ(needles_in_place(*map)->holes, s.procedure.stabilising);
+}
+
+TEST(HolePrediction, without_needles_in_place_says_nothing_about_them) {
+  Scenario s = scenario_beside_needles();
+  s.procedure.stabilising.clear();
+  const auto model = compiled(s);
+  EXPECT_TRUE(model->staying().empty());
+  KnownTargets targets;
+  const auto alone = predict(model, targets);
+  ASSERT_TRUE(alone);
+  EXPECT_FALSE(alone->in_place);
+}
+
+// What needles in place have done to the tissue is what the two ways of counting differ by: they have pushed the gland
+// to superior, and the tissue that the tip finds at the planned place is tissue from further inferior.
+TEST(NeedlesInPlace, hold_the_gland_where_they_have_pushed_it) {
+  const Scenario s = scenario_beside_needles();
+  KnownTargets targets;
+  const auto beside = predict(compiled(s), targets);
+  Scenario bare = s;
+  bare.procedure.stabilising.clear();
+  KnownTargets others;
+  const auto alone = predict(compiled(bare), others);
+  ASSERT_TRUE(beside && alone && beside->in_place);
+  const NeedlesInPlace& held = *beside->in_place;
+  EXPECT_GT(held.shift_mm.value().z(), 0.02) << "their friction and their tips push the gland";
+  EXPECT_LT(held.shift_max_mm->norm(), 0.95 * alone->shift_max_mm->norm()) << "they hold it against the next needle";
+  EXPECT_GT((*held.tip_error_mm - *beside->tip_error_mm).z(), 0.02) << "less of the error is left to this needle";
+}
+
+TEST(NeedlesInPlace, in_firm_tissue_make_no_difference_to_what_counts_from_the_plan) {
+  Scenario s = scenario_beside_needles();
+  for (const char* region : {"body", "prostate"}) {
+    TissueParameters t = tissue_of(s, region);
+    t.young_kPa *= 1000.0;
+    s.tissue[region] = t;
+  }
+  KnownTargets targets;
+  const auto beside = predict(compiled(s), targets);
+  ASSERT_TRUE(beside && beside->in_place);
+  EXPECT_LT(beside->in_place->shift_mm->norm(), 0.01);
+  EXPECT_LT((*beside->in_place->tip_error_mm - *beside->tip_error_mm).norm(), 0.05);
+}
+
+TEST(NeedlesInPlace, and_an_insertion_through_the_same_hole_are_refused) {
+  Scenario s = scenario_beside_needles();
+  s.insertions[0].hole = "B2";
+  const auto refusal = check_scenario(s, "case.toml");
+  ASSERT_FALSE(refusal);
+  EXPECT_SAYS(refusal.error().message(), "insertion[0].hole = \"B2\" is taken");
+  s.insertions[0].hole = "C2";
+  s.procedure.stabilising = {"Z9"};
+  EXPECT_SAYS(check_scenario(s, "case.toml").error().message(), "procedure.stabilising names \"Z9\"");
+}
+
+// A recording of a run with needles in place is repeated with them in place.
+TEST(NeedlesInPlace, are_in_place_when_a_recording_is_repeated) {
+  const auto model = compiled(scenario_beside_needles());
+  const Finished run(model);
+  const std::vector<Step>& steps = run.kept.steps;
+  Kept again;
+  ASSERT_TRUE(run_recorded(model, steps, again));
+  ASSERT_EQ(again.steps.size(), steps.size());
+  for (std::size_t k = 0; k < steps.size(); ++k) EXPECT_EQ(again.steps[k].hand_force_N, steps[k].hand_force_N) << k;
+}
+
 TEST(TipError, is_what_the_deepest_point_of_the_track_lies_off_the_plan) {
   // In very stiff tissue the needle reaches the planned point.
   Scenario soft = scenario_with_template();

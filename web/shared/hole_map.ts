@@ -15,6 +15,8 @@ export interface MappedHole {
   tip_error_mm: Shift | null;
   predicted: boolean;
   remark: string;
+  /** With needles in place: what counts from the tissue as they hold it. */
+  in_place?: { shift_at_break_mm: Shift | null; shift_max_mm: Shift | null; tip_error_mm: Shift | null };
 }
 
 export interface HoleMap {
@@ -38,9 +40,9 @@ export const MEASURES: Measure[] = [
   { key: 'bone', label: 'Clearance to bone', of: (h) => h.clearance_mm.bone, clearance: true },
   { key: 'urethra', label: 'Clearance to the urethra', of: (h) => h.clearance_mm.urethra, clearance: true },
   { key: 'rectum', label: 'Clearance to the rectum', of: (h) => h.clearance_mm.rectum, clearance: true },
-  { key: 'break', label: 'Gland shift when its capsule breaks', of: (h) => h.shift_at_break_mm?.norm ?? null, clearance: false },
-  { key: 'shift', label: 'Largest gland shift', of: (h) => h.shift_max_mm?.norm ?? null, clearance: false },
-  { key: 'tip', label: 'Tip error', of: (h) => h.tip_error_mm?.norm ?? null, clearance: false },
+  { key: 'break', label: 'Gland shift when its capsule breaks', of: (h) => (h.in_place ?? h).shift_at_break_mm?.norm ?? null, clearance: false },
+  { key: 'shift', label: 'Largest gland shift', of: (h) => (h.in_place ?? h).shift_max_mm?.norm ?? null, clearance: false },
+  { key: 'tip', label: 'Tip error', of: (h) => (h.in_place ?? h).tip_error_mm?.norm ?? null, clearance: false },
 ];
 
 /** The clearance to the nearest structure. */

@@ -34,13 +34,25 @@ struct HoleRow {
 /// Map of a template before the insertion: the holes from which a needle reaches the target, and the predicted effect
 /// of a needle through each of them.
 struct HoleMap {
-  std::vector<std::string> columns;  ///< labels of the template's columns, from the patient's right to the left
-  std::vector<std::string> rows;     ///< labels of the template's rows, from posterior to anterior
-  double pitch_mm = 5.0;             ///< distance between neighbouring holes
-  std::string planned;               ///< hole of the scenario's own insertion; may be empty
-  std::vector<HoleRow> holes;        ///< row by row from anterior to posterior, each from the patient's right to left
-  int missing = 0;                   ///< number of holes whose way misses the target; they are not in `holes`
+  std::vector<std::string> columns;   ///< labels of the template's columns, from the patient's right to the left
+  std::vector<std::string> rows;      ///< labels of the template's rows, from posterior to anterior
+  double pitch_mm = 5.0;              ///< distance between neighbouring holes
+  std::string planned;                ///< hole of the scenario's own insertion; may be empty
+  std::vector<std::string> in_place;  ///< holes of the needles that are in place before (Model::staying())
+  std::vector<HoleRow> holes;         ///< row by row from anterior to posterior, each from the patient's right to left
+  int missing = 0;                    ///< number of holes whose way misses the target; they are not in `holes`
 };
+
+/// The figures of a hole by which a user chooses: with needles in place those that count from the tissue as these hold
+/// it, else those that count from the tissue at rest.
+struct HoleEffect {
+  std::optional<Vec3> shift_at_break_mm, shift_max_mm, tip_error_mm;
+};
+HoleEffect effect_of(const HoleRow& row);
+
+/// The needles in place as the prediction of the planned hole, or of the first that has one, knows them; null without
+/// needles in place or without a prediction. The map must outlive the result.
+const NeedlesInPlace* needles_in_place(const HoleMap& map);
 
 /// Structures that the model does not have: no hole of the map has a clearance to them.
 std::vector<Spared> missing_structures(const HoleMap& map);

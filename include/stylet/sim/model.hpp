@@ -71,7 +71,10 @@ class Model {
   [[nodiscard]] const std::shared_ptr<const SpreadCompliance>& spread() const { return near_field_.spread; }
   [[nodiscard]] const std::vector<RegionLaws>& laws() const { return laws_; }
   [[nodiscard]] const CouplingSettings& coupling() const { return coupling_; }
-  [[nodiscard]] const std::vector<PlannedInsertion>& insertions() const { return insertions_; }
+  [[nodiscard]] const std::vector<PlannedInsertion>& insertions() const { return insertions_.own; }
+  /// Needles that go in before all insertions and stay (procedure.stabilising): each through its hole as the first
+  /// insertion would go through it. A program that steps a Simulation itself has to put them in.
+  [[nodiscard]] const std::vector<PlannedInsertion>& staying() const { return insertions_.staying; }
   /// Radius [mm] around the planned paths within which compliance is precomputed: coupling.corridor_mm, or less if that
   /// radius holds more than coupling.corridor_nodes nodes.
   [[nodiscard]] double corridor_mm() const { return corridor_mm_; }
@@ -103,7 +106,9 @@ class Model {
   std::vector<TissueParameters> tissue_parameters_;  ///< by region
   CouplingSettings coupling_;
   double corridor_mm_ = 0.0;
-  std::vector<PlannedInsertion> insertions_;
+  struct {
+    std::vector<PlannedInsertion> own, staying;
+  } insertions_;
   std::vector<int> target_;
   Supports supports_;
   std::vector<std::string> warnings_;

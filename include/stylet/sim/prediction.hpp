@@ -13,10 +13,11 @@ namespace stylet {
 
 /// Figures of one insertion up to its deepest point; they equal the figures of the same names in a Summary.
 struct Prediction {
-  std::optional<Vec3> shift_at_break_mm;  ///< GlandMotion::shift_at_break_mm; also empty without a target
-  std::optional<Vec3> shift_max_mm;       ///< GlandMotion::shift_max_mm; empty without a target
-  std::optional<Vec3> tip_error_mm;       ///< Summary::tip_error_mm
-  std::vector<std::string> remarks;       ///< sentences: organs harmed, surfaces unbroken, steps without a balance
+  std::optional<Vec3> shift_at_break_mm;   ///< GlandMotion::shift_at_break_mm; also empty without a target
+  std::optional<Vec3> shift_max_mm;        ///< GlandMotion::shift_max_mm; empty without a target
+  std::optional<Vec3> tip_error_mm;        ///< Summary::tip_error_mm
+  std::optional<NeedlesInPlace> in_place;  ///< Summary::in_place
+  std::vector<std::string> remarks;        ///< sentences: organs harmed, surfaces unbroken, steps without a balance
 };
 
 /// Cache of target motions: a further model of the same patient and tissue with another needle reuses a solution if
@@ -36,6 +37,7 @@ class KnownTargets {
 };
 
 /// Simulates the first insertion of a model up to its deepest point, dwell included, with the same results as run().
+/// Needles that stay (Model::staying()) go in first.
 /// Neither pictures nor the way out are computed.
 /// @param targets cache for models of the same patient and tissue
 /// @param progress of the insertion; may throw to cancel

@@ -80,6 +80,19 @@ struct TargetShift {
   double largest_mm = 0.0;  ///< largest displacement of a node of the target, as the mesh represents it: mesh-dependent
 };
 
+/// Needles in place before an insertion (Model::staying()), and figures of the insertion that count from the tissue as
+/// these needles hold it. Vectors are LPS.
+struct NeedlesInPlace {
+  std::vector<std::string> holes;  ///< of the needles in place
+  std::optional<Vec3> shift_mm;    ///< the gland's shift by them alone, before the insertion; empty without target
+  std::optional<Vec3> shift_at_break_mm;  ///< as GlandMotion::shift_at_break_mm, less shift_mm
+  std::optional<Vec3> shift_max_mm;       ///< the largest further shift of the gland on the way in
+  /// The deepest material point of the track minus the one that is where a rigid straight needle would reach, while the
+  /// needles in place hold the tissue; empty where Summary::tip_error_mm is.
+  std::optional<Vec3> tip_error_mm;
+  std::vector<std::string> remarks;  ///< sentences about the way in of the needles in place
+};
+
 /// Results of a run.
 struct Summary {
   std::string version;
@@ -95,6 +108,8 @@ struct Summary {
   /// in a patient that nothing has moved. LPS; the largest of several insertions; empty if the tip is not in the tissue
   /// at that moment, and in recordings of earlier versions.
   std::optional<Vec3> tip_error_mm;
+  /// Of several insertions the one with the largest tip error; empty without needles in place.
+  std::optional<NeedlesInPlace> in_place;
   std::vector<TargetShift> target_shifts;  ///< at the deepest point of each insertion; empty without a target
   /// TargetShift::centroid_mm and largest_mm of the insertion with the greatest largest_mm.
   Vec3 target_shift_centroid_mm = Vec3::Zero();

@@ -15,9 +15,10 @@ class RunObserver {
   virtual Result<> on_frame(const Frame& frame) = 0;
 };
 
-/// Simulates all insertions of a model, one after the other. Frames of each insertion: "before"; one per event,
-/// labelled with the event's name, except for region_entered, retraction_start and withdrawn; "deepest"; "after"; and
-/// unlabelled ones at scenario.output.frames_per_s, at most output.max_frames.
+/// Simulates all insertions of a model, one after the other. Needles that stay (Model::staying()) go in first; their
+/// steps are not recorded, and time counts from the moment when they are in place. Frames of each insertion: "before";
+/// one per event, labelled with the event's name, except for region_entered, retraction_start and withdrawn; "deepest";
+/// "after"; and unlabelled ones at scenario.output.frames_per_s, at most output.max_frames.
 /// @return the results; apart from the step times, two runs give the same numbers
 Result<Summary> run(const std::shared_ptr<const Model>& model, RunObserver& observer, const Progress& progress = {});
 

@@ -37,6 +37,9 @@ class Simulation {
   /// @return last_step(); its step_us is 0, since the caller measures computing time
   const Step& step(const Pose& base, double dt);
 
+  /// Counts time from now on: the time of the last step becomes 0. Nothing else depends on the time.
+  void start_clock();
+
   /// Makes the compliance near the tip available; call between steps. Allocates when the tip has left the corridor.
   void prepare();
 

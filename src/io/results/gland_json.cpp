@@ -26,6 +26,24 @@ std::optional<Vec3> vector_of(const Json& json) {
   return Vec3(json.at("LR").get<double>(), json.at("AP").get<double>(), json.at("SI").get<double>());
 }
 
+Json in_place_json(const NeedlesInPlace& in_place) {
+  return {{"holes", in_place.holes},
+          {"shift_mm", vector_json(in_place.shift_mm)},
+          {"shift_at_break_mm", vector_json(in_place.shift_at_break_mm)},
+          {"shift_max_mm", vector_json(in_place.shift_max_mm)},
+          {"tip_error_mm", vector_json(in_place.tip_error_mm)},
+          {"remarks", in_place.remarks}};
+}
+
+NeedlesInPlace in_place_of(const Json& json) {
+  return {.holes = json.at("holes").get<std::vector<std::string>>(),
+          .shift_mm = vector_of(json.at("shift_mm")),
+          .shift_at_break_mm = vector_of(json.at("shift_at_break_mm")),
+          .shift_max_mm = vector_of(json.at("shift_max_mm")),
+          .tip_error_mm = vector_of(json.at("tip_error_mm")),
+          .remarks = json.at("remarks").get<std::vector<std::string>>()};
+}
+
 Json gland_json(const std::optional<GlandMotion>& gland) {
   if (!gland) return nullptr;
   const PlaneAngles angles = plane_angles(gland->rotation_deg);

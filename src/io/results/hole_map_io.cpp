@@ -34,17 +34,19 @@ Json hole_json(const HoleRow& row) {
   for (std::size_t i = 0; i < kSpared.size(); ++i)
     clearance[to_string(kSpared[i])] = row.clearance_mm[i] ? Json(*row.clearance_mm[i]) : Json(nullptr);
   const Prediction prediction = row.prediction.value_or(Prediction{});
-  return {{"hole", row.hole},
-          {"left_mm", row.left_mm},
-          {"anterior_mm", row.anterior_mm},
-          {"depth_mm", row.depth_mm},
-          {"in_target_mm", row.in_target_mm},
-          {"clearance_mm", clearance},
-          {"shift_at_break_mm", vector_json(prediction.shift_at_break_mm)},
-          {"shift_max_mm", vector_json(prediction.shift_max_mm)},
-          {"tip_error_mm", vector_json(prediction.tip_error_mm)},
-          {"predicted", row.prediction.has_value()},
-          {"remark", remark_of(row)}};
+  Json json{{"hole", row.hole},
+            {"left_mm", row.left_mm},
+            {"anterior_mm", row.anterior_mm},
+            {"depth_mm", row.depth_mm},
+            {"in_target_mm", row.in_target_mm},
+            {"clearance_mm", clearance},
+            {"shift_at_break_mm", vector_json(prediction.shift_at_break_mm)},
+            {"shift_max_mm", vector_json(prediction.shift_max_mm)},
+            {"tip_error_mm", vector_json(prediction.tip_error_mm)},
+            {"predicted", row.prediction.has_value()},
+            {"remark", remark_of(row)}};
+  if (prediction.in_place) json["in_place"] = in_place_json(*prediction.in_place);
+  return json;
 }
 
 }  // namespace
@@ -52,7 +54,10 @@ Json hole_json(const HoleRow& row) {
 std::string hole_map_csv(const HoleMap& map) {
   std::string text = "hole,left_mm,anterior_mm,depth_mm,in_target_mm";
   for (const Spared structure : kSpared) text += fmt::format(",clearance_{}_mm", to_string(structure));
-  text += ",shift_at_break_mm,shift_max_mm,tip_error_mm,remark\n";
+  text += ",shift_at_break_mm,shift_max_mm,tip_error_mm";
+  const bool beside = !map.in_place.empty();
+  if (beside) text += ",in_place_shift_at_break_mm,in_place_shift_max_mm,in_place_tip_error_mm";
+  text += ",remark\n";
   for (const HoleRow& row : map.holes) {
     text += row.hole;
     for (const double value : {row.left_mm, row.anterior_mm, row.depth_mm, row.in_target_mm})
@@ -61,6 +66,9 @@ std::string hole_map_csv(const HoleMap& map) {
     const Prediction prediction = row.prediction.value_or(Prediction{});
     for (const auto& vector : {prediction.shift_at_break_mm, prediction.shift_max_mm, prediction.tip_error_mm})
       text += "," + length_field(vector);
+    const NeedlesInPlace held = prediction.in_place.value_or(NeedlesInPlace{});
+    for (const auto& vector : {held.shift_at_break_mm, held.shift_max_mm, held.tip_error_mm})
+      text += beside ? "," + length_field(vector) : "";
     text += "," + csv_text(remark_of(row)) + "\n";
   }
   return text;
@@ -69,8 +77,9 @@ std::string hole_map_csv(const HoleMap& map) {
 std::string hole_map_json(const HoleMap& map) {
   Json holes = Json::array();
   for (const HoleRow& row : map.holes) holes.push_back(hole_json(row));
-  const Json json{{"columns", map.columns}, {"rows", map.rows},       {"pitch_mm", map.pitch_mm},
-                  {"planned", map.planned}, {"missing", map.missing}, {"holes", std::move(holes)}};
+  const Json json{{"columns", map.columns},   {"rows", map.rows},         {"pitch_mm", map.pitch_mm},
+                  {"planned", map.planned},   {"in_place", map.in_place}, {"missing", map.missing},
+                  {"holes", std::move(holes)}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

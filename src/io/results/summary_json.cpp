@@ -59,7 +59,7 @@ std::string summary_json(const Summary& s) {
                        {"moved_mm", m.change.moved_mm},
                        {"condition", m.change.condition}});
   }
-  const Json json = {
+  Json json = {
       {"version", s.version},
       {"scenario", s.scenario},
       {"mesh", {{"nodes", s.nodes}, {"tets", s.tets}}},
@@ -87,6 +87,7 @@ std::string summary_json(const Summary& s) {
       {"mesh_changes", changes},
       {"warnings", s.warnings},
   };
+  if (s.in_place) json["in_place"] = in_place_json(*s.in_place);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -114,6 +115,7 @@ Result<Summary> parse_summary_json(std::string_view text, const std::string& whe
     }
     s.tip_deflection_mm = number(json.at("tip_deflection_mm"));
     if (json.contains("tip_error_mm")) s.tip_error_mm = vector_of(json.at("tip_error_mm"));  // missing in older files
+    if (json.contains("in_place")) s.in_place = in_place_of(json.at("in_place"));  // missing without needles in place
     if (const Json& shift = json.at("target_shift_mm"); !shift.is_null()) {
       for (int k = 0; k < 3; ++k)
         s.target_shift_centroid_mm[k] = number(shift.at("centroid").at(static_cast<size_t>(k)));

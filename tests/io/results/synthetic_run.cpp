@@ -325,11 +325,28 @@ HoleMap synthetic_map() {
         hole.prediction = Prediction{Vec3(0.1, 0.2, 2.5 - 0.05 * distance),
                                      Vec3(0.1, 0.3, 3 - 0.06 * distance),
                                      Vec3(0.3, 0.1, -8 - 0.2 * distance),
+                                     {},
                                      {}};
       }
       if (name == "D4") hole.prediction->remarks.push_back("The needle entered the urethra, at a depth of 27.0 mm.");
       map.holes.push_back(std::move(hole));
     }
+  }
+  return map;
+}
+
+HoleMap synthetic_map_beside_needles() {
+  HoleMap map = synthetic_map();
+  map.in_place = {"B4", "F4"};
+  for (HoleRow& hole : map.holes) {
+    if (!hole.prediction) continue;
+    const Prediction& alone = *hole.prediction;
+    hole.prediction->in_place = NeedlesInPlace{.holes = map.in_place,
+                                               .shift_mm = Vec3(0, 0, 2),
+                                               .shift_at_break_mm = Vec3(0.4 * *alone.shift_at_break_mm),
+                                               .shift_max_mm = Vec3(0.5 * *alone.shift_max_mm),
+                                               .tip_error_mm = Vec3(*alone.tip_error_mm + Vec3(0, 0, 2)),
+                                               .remarks = {"Needle in place, hole B4: it scraped."}};
   }
   return map;
 }

@@ -35,6 +35,9 @@ SyntheticRun synthetic_run(const SyntheticOptions& options = {});
 /// data: hole D1 has no way, D7 has no prediction, and there is no rectum.
 HoleMap synthetic_map();
 
+/// The same map with needles in place before.
+HoleMap synthetic_map_beside_needles();
+
 RunRecording recording_of(const SyntheticRun& run);
 
 /// An empty folder below the test's temporary folder, removed at the end with its content.

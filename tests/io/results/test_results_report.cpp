@@ -89,6 +89,30 @@ TEST(Report, has_a_map_of_the_template_where_there_is_one) {
   }
 }
 
+TEST(Report, with_needles_in_place_says_so_and_from_where_the_figures_of_the_map_count) {
+  const auto run = recording_of(synthetic_run());
+  const auto regions = region_views(run.mesh, run.info.target_regions);
+  const auto page_with = [&](const HoleMap& map) {
+    return report_html(run, regions, find_moments(run.frames), {{}, "no driver"}, &map).value();
+  };
+  EXPECT_EQ(page_with(synthetic_map()).find("Needles are in place"), std::string::npos);
+  EXPECT_EQ(page_with(synthetic_map()).find("Tip error from the plan"), std::string::npos);
+  const std::string page = page_with(synthetic_map_beside_needles());
+  EXPECT_NE(page.find("Needles are in place in the holes B4, F4"), std::string::npos);
+  EXPECT_NE(page.find("mm from its place at rest"), std::string::npos);
+  EXPECT_NE(page.find("Needle in place, hole B4: it scraped."), std::string::npos);
+  EXPECT_NE(page.find("Tip error from the plan"), std::string::npos);
+
+  auto beside = synthetic_run();
+  EXPECT_EQ(page_of(recording_of(beside)).find("Needles were in place"), std::string::npos);
+  const HoleMap map = synthetic_map_beside_needles();
+  ASSERT_NE(needles_in_place(map), nullptr);
+  beside.summary.in_place = *needles_in_place(map);
+  const std::string told = page_of(recording_of(beside));
+  EXPECT_NE(told.find("Needles were in place in the holes B4, F4, and stayed."), std::string::npos);
+  EXPECT_NE(told.find("by 2.00 mm before"), std::string::npos);
+}
+
 TEST(Report, tells_what_happened_from_the_data) {
   auto run = synthetic_run();
   const std::string page = page_of(recording_of(run));

@@ -153,6 +153,61 @@ TEST(MapCsv, has_a_line_for_each_hole_and_nothing_where_there_is_no_figure) {
   EXPECT_EQ(count, map.holes.size());
 }
 
+TEST(MapCsv, with_needles_in_place_has_the_figures_from_the_tissue_as_they_hold_it_as_well) {
+  const HoleMap map = stylet::testing::synthetic_map_beside_needles();
+  std::istringstream lines(hole_map_csv(map));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_TRUE(
+      line.ends_with("shift_at_break_mm,shift_max_mm,tip_error_mm,in_place_shift_at_break_mm,"
+                     "in_place_shift_max_mm,in_place_tip_error_mm,remark"))
+      << line;
+  for (const HoleRow& row : map.holes) {
+    ASSERT_TRUE(std::getline(lines, line));
+    if (!row.prediction || line.find('"') != line.rfind('"') - 1) continue;  // a remark may contain commas
+    std::vector<std::string> fields;
+    std::istringstream stream(line);
+    for (std::string field; std::getline(stream, field, ',');) fields.push_back(field);
+    ASSERT_EQ(fields.size(), 15U) << line;
+    EXPECT_NEAR(std::stod(fields[12]), row.prediction->in_place->shift_max_mm->norm(), 1e-6) << line;
+    EXPECT_NEAR(std::stod(fields[13]), row.prediction->in_place->tip_error_mm->norm(), 1e-6) << line;
+  }
+}
+
+TEST(MapJson, says_which_needles_are_in_place_and_what_counts_from_there) {
+  const auto alone = nlohmann::json::parse(hole_map_json(stylet::testing::synthetic_map()));
+  EXPECT_TRUE(alone.at("in_place").empty());
+  for (const auto& hole : alone.at("holes")) EXPECT_FALSE(hole.contains("in_place"));
+  const auto beside = nlohmann::json::parse(hole_map_json(stylet::testing::synthetic_map_beside_needles()));
+  EXPECT_EQ(beside.at("in_place"), (nlohmann::json{"B4", "F4"}));
+  for (const auto& hole : beside.at("holes")) {
+    ASSERT_EQ(hole.contains("in_place"), hole.at("predicted").get<bool>());
+    if (!hole.contains("in_place")) continue;
+    EXPECT_EQ(hole.at("in_place").at("shift_mm").at("SI"), 2.0);
+    EXPECT_LT(hole.at("in_place").at("shift_max_mm").at("norm"), hole.at("shift_max_mm").at("norm"));
+  }
+}
+
+TEST(SummaryJson, keeps_what_it_says_about_needles_in_place) {
+  Summary summary = stylet::testing::synthetic_run().summary;
+  EXPECT_FALSE(nlohmann::json::parse(summary_json(summary)).contains("in_place"));
+  const NeedlesInPlace held{.holes = {"B4"},
+                            .shift_mm = Vec3(0.1, 0.2, 2),
+                            .shift_at_break_mm = std::nullopt,
+                            .shift_max_mm = Vec3(0, 0, 1.5),
+                            .tip_error_mm = Vec3(0.3, 0, -4),
+                            .remarks = {"Needle in place, hole B4: it scraped."}};
+  summary.in_place = held;
+  const auto read = parse_summary_json(summary_json(summary), "test");
+  ASSERT_TRUE(read && read->in_place);
+  EXPECT_EQ(read->in_place->holes, held.holes);
+  EXPECT_EQ(read->in_place->shift_mm, held.shift_mm);
+  EXPECT_EQ(read->in_place->shift_at_break_mm, held.shift_at_break_mm);
+  EXPECT_EQ(read->in_place->shift_max_mm, held.shift_max_mm);
+  EXPECT_EQ(read->in_place->tip_error_mm, held.tip_error_mm);
+  EXPECT_EQ(read->in_place->remarks, held.remarks);
+}
+
 TEST(SummaryJson, has_the_documented_keys_in_order) {
   const auto run = stylet::testing::synthetic_run();
   const auto json = nlohmann::ordered_json::parse(summary_json(run.summary));

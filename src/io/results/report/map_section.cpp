@@ -29,8 +29,10 @@ std::string rows(const HoleMap& map) {
     html += map_cell(has_way ? std::optional(row.depth_mm) : std::nullopt, kWayDigits);
     html += map_cell(has_way ? std::optional(row.in_target_mm) : std::nullopt, kWayDigits);
     for (const auto& clearance : row.clearance_mm) html += map_cell(clearance, kWayDigits);
-    for (const auto& vector : {prediction.shift_at_break_mm, prediction.shift_max_mm, prediction.tip_error_mm})
+    const HoleEffect effect = effect_of(row);
+    for (const auto& vector : {effect.shift_at_break_mm, effect.shift_max_mm, effect.tip_error_mm})
       html += map_cell(length(vector), kShiftDigits);
+    if (!map.in_place.empty()) html += map_cell(length(prediction.tip_error_mm), kShiftDigits);
     html += "<td>" + html_prose(fmt::format("{}", fmt::join(remarks, " "))) + "</td></tr>";
   }
   return html;
@@ -43,6 +45,24 @@ std::string tell_missing(const HoleMap& map) {
   return text;
 }
 
+/// Which needles are in place, what they have done to the gland, and from where the figures count.
+std::string tell_in_place(const HoleMap& map) {
+  if (map.in_place.empty()) return {};
+  std::string text = fmt::format(
+      "Needles are in place in the {} {} (procedure.stabilising): they went in first and stay, and the needle through "
+      "each other hole goes in beside them. Shifts count from the gland as they hold it",
+      map.in_place.size() == 1 ? "hole" : "holes", fmt::join(map.in_place, ", "));
+  const NeedlesInPlace* held = needles_in_place(map);
+  if (held != nullptr && held->shift_mm)
+    text += fmt::format(", {:.2f} mm from its place at rest", held->shift_mm->norm());
+  text +=
+      ". The tip error counts from the tissue that lies at the planned place while they are in, and, in the last "
+      "column "
+      "of numbers, from the tissue that was planned, in a patient that nothing has moved.";
+  if (held != nullptr && !held->remarks.empty()) text += " " + fmt::format("{}", fmt::join(held->remarks, " "));
+  return "<p>" + html_prose(text) + "</p>";
+}
+
 }  // namespace
 
 std::string map_section(const HoleMap& map) {
@@ -53,14 +73,17 @@ std::string map_section(const HoleMap& map) {
              "the gland. The straight way of the other {} misses the gland; they are small dots. In every picture a "
              "dark colour is a warning, and the number is the value in millimetres.",
              map.holes.size(), map.missing)) +
-         html_escaped(tell_missing(map)) +
-         "</p><p>Seen from the patient’s feet: the patient’s right is on the left, anterior is up. The planned hole "
+         html_escaped(tell_missing(map)) + "</p>" + tell_in_place(map) +
+         "<p>Seen from the patient’s feet: the patient’s right is on the left, anterior is up. The planned hole "
          "has a frame. Hold the pointer over a hole to see all its values.</p><div class=\"templates needs-script\" "
          "id=\"map-pictures\"></div><details open><summary>All numbers</summary><div class=\"scroll "
          "tall-table\"><table class=\"parameters map\"><thead><tr><th rowspan=\"2\">Hole</th><th class=\"number\" "
          "rowspan=\"2\">Depth [mm]</th><th class=\"number\" rowspan=\"2\">In the gland [mm]</th><th "
          "colspan=\"3\">Clearance [mm] to</th><th colspan=\"2\">Shift of the gland [mm]</th><th class=\"number\" "
-         "rowspan=\"2\">Tip error [mm]</th><th rowspan=\"2\">Remark</th></tr><tr><th class=\"number\">bone</th><th "
+         "rowspan=\"2\">Tip error [mm]</th>" +
+         std::string(map.in_place.empty() ? ""
+                                          : "<th class=\"number\" rowspan=\"2\">Tip error from the plan [mm]</th>") +
+         "<th rowspan=\"2\">Remark</th></tr><tr><th class=\"number\">bone</th><th "
          "class=\"number\">urethra</th><th class=\"number\">rectum</th><th class=\"number\">at break</th><th "
          "class=\"number\">at most</th></tr></thead><tbody>" +
          rows(map) +

@@ -143,6 +143,25 @@ std::string tell_tip_error(const RunRecording& run) {
       error->norm(), describe_shift(*error));
 }
 
+/// Sentences about the needles in place, and about what counts from the tissue as they hold it.
+std::string tell_in_place(const RunRecording& run) {
+  const auto& held = run.summary->in_place;
+  if (!held) return {};
+  std::string text = fmt::format("Needles were in place in the {} {}, and stayed.",
+                                 held->holes.size() == 1 ? "hole" : "holes", fmt::join(held->holes, ", "));
+  if (held->shift_mm && held->shift_max_mm) {
+    text +=
+        fmt::format(" They had moved the {} by {:.2f} mm before; this needle moved it further by at most {:.2f} mm.",
+                    target_name(run), held->shift_mm->norm(), held->shift_max_mm->norm());
+  }
+  if (held->tip_error_mm) {
+    text += fmt::format(
+        " Counted from the tissue that lay at the planned place while they were in, the tip error was {:.1f} mm.",
+        held->tip_error_mm->norm());
+  }
+  return text;
+}
+
 std::string tell_retraction(const RunRecording& run, const Frame& after) {
   const auto& events = run.summary->events;
   const Event* back = find(events, EventKind::retraction_start);
@@ -241,7 +260,7 @@ std::vector<std::string> tell_what_happened(const RunRecording& run, const Momen
     if (!paragraph.empty()) paragraphs.push_back(paragraph);
   };
   add({tell_motion(run, deepest), tell_events(s.events)});
-  add({tell_forces(run), tell_target(run), tell_tip_error(run),
+  add({tell_forces(run), tell_target(run), tell_tip_error(run), tell_in_place(run),
        fmt::format("The tip was at most {:.1f} mm away from the straight line along which it was aimed.",
                    s.tip_deflection_mm)});
   add({tell_retraction(run, run.frames[moments.after])});
