@@ -76,7 +76,7 @@ Result<serve::CaseSource> case_of(const fs::path& file, const ServeArguments& ar
     const Result<Scenario> scenario = read_scenario(file, arguments.settings);
     if (!scenario) return scenario.error();
     title = scenario->name;
-    has_plan = scenario->insertions.empty() && !scenario->plan.file.empty();
+    has_plan = scenario->insertions.empty() && scenario->plan.is_given();
     if (!scenario->procedure.stabilising.empty()) {
       console.warn(fmt::format("{}: the live page holds one needle, so the needles of procedure.stabilising stay out.",
                                file.string()));

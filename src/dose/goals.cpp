@@ -50,6 +50,25 @@ Result<DoseMetric> parse_metric(const std::string& text, const std::string& wher
   return metric;
 }
 
+Result<DoseGoal> parse_goal(const GoalText& text, const std::string& where) {
+  constexpr const char* bounds = "Write e.g. >=90 or <150";
+  if (text.structure.empty())
+    return input_error(where, "the goal has no structure", "Write for example prostate, urethra or rectum");
+  if (const auto metric = parse_metric(text.metric, where); !metric) return metric.error();
+  DoseGoal goal{text.structure, text.metric, true, 0.0, text.citation};
+  std::string_view bound = text.bound;
+  goal.at_least = bound.starts_with('>');
+  if (!bound.starts_with('>') && !bound.starts_with('<'))
+    return input_error(where, "the bound '" + text.bound + "' does not begin with > or <", bounds);
+  bound.remove_prefix(bound.size() > 1 && bound[1] == '=' ? 2 : 1);
+  while (bound.starts_with(' ')) bound.remove_prefix(1);
+  while (bound.ends_with(' ')) bound.remove_suffix(1);
+  const auto [end, error] = std::from_chars(bound.data(), bound.data() + bound.size(), goal.bound);
+  if (bound.empty() || error != std::errc() || end != bound.data() + bound.size())
+    return input_error(where, "the bound '" + text.bound + "' has no number", bounds);
+  return goal;
+}
+
 std::optional<double> figure_of(const DoseMetric& metric, const DoseVolume& dvh, double prescription_Gy) {
   const bool relative = metric.unit == DoseMetric::Unit::percent;
   if (metric.kind == DoseMetric::Kind::volume) {

@@ -168,7 +168,9 @@ Result<ImplantHistory> simulate_implant(const Scenario& scenario, const TetMesh&
     for (std::size_t n = 0; n < groups[g].size(); ++n) {
       const std::size_t k = groups[g][n];
       NeedleOutcome& one = outcome.needles[n];
-      settle_seeds(one.seeds, scenario.seed, k);
+      Scenario::Seed choice = scenario.seed;
+      choice.stranded = needles[k].stranded.value_or(choice.stranded);
+      settle_seeds(one.seeds, choice, k);
       for (SeedHistory& seed : one.seeds) {
         seed.needle = k;
         history.seeds.push_back(seed);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/patient/implant_plan.hpp"
 
-#include "stylet/io/dose_io.hpp"
 #include "stylet/io/input.hpp"
+#include "stylet/io/scenario_plan.hpp"
 #include "stylet/patient/source_choice.hpp"
 #include "stylet/phantom/phantom.hpp"
 
@@ -50,16 +50,16 @@ Vec3 centre_of(const DoseStructures& structures, const DosePlan& plan) {
   return sum / static_cast<double>(plan.sources.size());
 }
 
-Result<DoseOptions> dose_options(const Scenario& scenario, const DoseStructures& structures, const DosePlan& plan) {
+Result<DoseOptions> dose_options(const Scenario& scenario, const DoseStructures& structures, const DosePlan& plan,
+                                 const std::string& where) {
   DoseOptions options;
-  // The program's own goals are those of permanent implants.
-  if (scenario.plan.goals.empty() && plan.implant == Implant::permanent) {
+  Result<std::optional<std::vector<DoseGoal>>> goals = goals_of_scenario(scenario, where);
+  if (!goals) return goals.error();
+  if (*goals) {
+    options.goals = **std::move(goals);
+  } else if (plan.implant == Implant::permanent) {  // the program's own goals are those of permanent implants
     const auto own = permanent_prostate_goals();
     options.goals.assign(own.begin(), own.end());
-  } else if (!scenario.plan.goals.empty()) {
-    Result<std::vector<DoseGoal>> goals = read_goals(scenario.plan.goals);
-    if (!goals) return goals.error();
-    options.goals = *std::move(goals);
   }
   const auto& percent = scenario.oedema.swelling_percent;
   options.swelling = {.centre_mm = centre_of(structures, plan),
@@ -98,15 +98,21 @@ Result<> check_temporary_scenario(const Scenario& scenario, const std::string& w
   return Ok{};
 }
 
+/// Needles of [[plan.needle]] may say themselves whether their seeds are a strand.
+void say_which_are_stranded(const Scenario::ImplantPlan& plan, std::vector<NeedleLoad>& needles) {
+  for (std::size_t k = 0; k < plan.needles.size(); ++k) {
+    const std::string name = name_of_plan_needle(plan, k);
+    for (NeedleLoad& needle : needles) {
+      if (needle.name == name) needle.stranded = plan.needles[k].stranded;
+    }
+  }
+}
+
 }  // namespace
 
 Result<ImplantPlan> read_implant_plan(const Scenario& scenario, const std::string& where, const Progress& progress) {
-  if (scenario.plan.file.empty()) {
-    return input_error(where, "the scenario has no plan",
-                       "Name a plan of seeds in it: [plan] and below it file = \"plan.csv\"");
-  }
   ImplantPlan out;
-  Result<DosePlan> plan = read_plan(scenario.plan.file);
+  Result<DosePlan> plan = plan_of_scenario(scenario, where);
   if (!plan) return plan.error();
   out.plan = *std::move(plan);
   Result<SourceModel> source = choose_source(scenario.plan.source, out.plan);
@@ -121,11 +127,12 @@ Result<ImplantPlan> read_implant_plan(const Scenario& scenario, const std::strin
                 : load_needles(out.plan, out.source.outer_length_mm, scenario.procedure.plug_mm);
   if (!needles) return needles.error();
   out.needles = *std::move(needles);
+  say_which_are_stranded(scenario.plan, out.needles);
   order_needles(out.needles, scenario.procedure.order);
   Result<DoseStructures> structures = structures_of(scenario, out.plan, progress);
   if (!structures) return structures.error();
   out.structures = *std::move(structures);
-  Result<DoseOptions> options = dose_options(scenario, out.structures, out.plan);
+  Result<DoseOptions> options = dose_options(scenario, out.structures, out.plan, where);
   if (!options) return options.error();
   out.options = *std::move(options);
   return out;

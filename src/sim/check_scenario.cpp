@@ -69,6 +69,81 @@ Result<> check_insertion(const Scenario& s, std::size_t number, const ScenarioPl
   return Ok{};
 }
 
+/// A plan is a file or a list of needles, and each needle has one place and one way to say its seeds.
+Result<> check_plan(const Scenario& s, const ScenarioPlace& place) {
+  const Scenario::ImplantPlan& plan = s.plan;
+  if (!plan.file.empty() && !plan.needles.empty()) {
+    return input_error(
+        place("plan.file"),
+        fmt::format("plan.file = \"{}\" is a plan, and there are {} [[plan.needle]]", plan.file, plan.needles.size()),
+        "Give the plan as a file or as needles, not as both");
+  }
+  const Scenario::ImplantPlan fresh;
+  if (plan.needles.empty()) {
+    const bool of_needles = plan.label != fresh.label || plan.strength_U != fresh.strength_U ||
+                            plan.prescription_Gy != fresh.prescription_Gy || plan.base_mm ||
+                            plan.seed_length_mm != fresh.seed_length_mm ||
+                            plan.spacer_length_mm != fresh.spacer_length_mm;
+    if (of_needles) {
+      return input_error(place("plan"),
+                         "label, strength_U, prescription_Gy, base_mm, seed_length_mm and spacer_length_mm belong to "
+                         "[[plan.needle]], and there is none",
+                         "Add [[plan.needle]], or give these values in the file of the plan");
+    }
+  } else if (!plan.base_mm) {
+    return input_error(place("plan"), "there are [[plan.needle]], and plan.base_mm is missing",
+                       "Give the LPS z of the base plane, where a needle has the retraction 0, in mm");
+  }
+  if (!plan.goals.empty() && !plan.goal_table.empty()) {
+    return input_error(place("plan.goals"),
+                       fmt::format("plan.goals = \"{}\" is a table of goals, and there are {} [[plan.goal]]",
+                                   plan.goals, plan.goal_table.size()),
+                       "Give the goals as a file or as tables, not as both");
+  }
+  for (std::size_t i = 0; i < plan.needles.size(); ++i) {
+    const Scenario::PlanNeedle& needle = plan.needles[i];
+    const std::string name = fmt::format("plan.needle[{}]", i);
+    if (needle.hole.empty() != needle.at_mm.has_value()) {
+      return input_error(
+          place(name), fmt::format("{} has {}", name, needle.at_mm ? "both hole and at_mm" : "neither hole nor at_mm"),
+          "Say where its line is: hole = \"D4\" or at_mm = [10, 5]");
+    }
+    if (needle.train.empty() != !needle.seeds_mm.empty()) {
+      return input_error(place(name),
+                         fmt::format("{} has {}", name,
+                                     needle.train.empty() ? "neither train nor seeds_mm" : "both train and seeds_mm"),
+                         "Say where its seeds are: train = \"S-1-S\" or seeds_mm = [0, 10]");
+    }
+    if (needle.hole.empty()) continue;
+    const auto offset = s.grid.offset_mm(needle.hole);
+    if (!offset) {
+      return input_error(place(name + ".hole"),
+                         fmt::format("{}.hole = \"{}\": {}", name, needle.hole, offset.error().what),
+                         offset.error().cure);
+    }
+    if (!s.grid.centre_mm) {
+      return input_error(
+          place(name + ".hole"),
+          fmt::format("{}.hole = \"{}\" is a hole, and template.centre_mm, which says where holes are, is "
+                      "missing",
+                      name, needle.hole),
+          "Give template.centre_mm, since places of a plan must not depend on a mesh; or at_mm instead of "
+          "the hole");
+    }
+    for (std::size_t before = 0; before < i; ++before) {
+      const std::string& other = plan.needles[before].hole;
+      if (other.empty()) continue;
+      const auto its = s.grid.offset_mm(other);
+      if (!its || *its != *offset) continue;
+      return input_error(
+          place(name + ".hole"),
+          fmt::format("{}.hole = \"{}\" is the hole of plan.needle[{}] as well", name, needle.hole, before),
+          "Give all seeds of a hole to one needle");
+    }
+  }
+  return Ok{};
+}
+
 /// Holes that the template has, each taken by one needle.
 Result<> check_stabilising(const Scenario& s, const ScenarioPlace& place) {
   for (const std::string& hole : s.procedure.stabilising) {
@@ -171,7 +246,8 @@ Result<> check_scenario(const Scenario& s, const ScenarioPlace& place) {
         "is \"coupled\"",
         "Set solver = \"staggered\", or leave projection = \"exact\"");
   }
-  if (s.insertions.empty() && s.plan.file.empty()) {
+  if (Result<> checked = check_plan(s, place); !checked) return checked;
+  if (s.insertions.empty() && !s.plan.is_given()) {
     return input_error(place(""), "there is no needle: no [[insertion]]",
                        "Add [[insertion]] and below it, for example, hole = \"D4\"");
   }

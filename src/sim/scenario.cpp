@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 
 /// Finds, sets and reads single keys of a scenario by their path.
 namespace stylet {
@@ -18,11 +20,28 @@ using Type = ScenarioValue::Type;
 
 constexpr const char* kAllKeys = "Run stylet insert --print-schema for a list of all keys";
 
+/// Tables of a scenario that form lists.
+constexpr std::array<std::string_view, 3> kLists{"insertion", "plan.needle", "plan.goal"};
+
+/// Number of entries of one of these lists.
+std::size_t entries_of(const Scenario& scenario, std::string_view list) {
+  if (list == "insertion") return scenario.insertions.size();
+  return list == "plan.needle" ? scenario.plan.needles.size() : scenario.plan.goal_table.size();
+}
+
+/// The list to which a path or a pattern belongs, "insertion" for "insertion[0].hole"; empty if to none.
+std::string_view list_of(std::string_view path) {
+  for (const std::string_view list : kLists) {
+    if (path.starts_with(list) && path.substr(list.size()).starts_with('[')) return list;
+  }
+  return {};
+}
+
 /// "tissue.prostate.young_kPa" → "tissue.<region>.young_kPa" and the slot; "insertion[2].hole" → "insertion[].hole".
 std::string pattern_of(const std::string& path, ScenarioSlot& slot) {
   constexpr std::string_view tissue = "tissue.";
   constexpr std::string_view regions = "patient.regions.";
-  constexpr std::string_view insertion = "insertion[";
+  const std::string_view list = list_of(path);
   if (path.starts_with(tissue)) {
     // The name of a region may contain dots, a key does not: the last dot separates them.
     const auto dot = path.rfind('.');
@@ -33,16 +52,17 @@ std::string pattern_of(const std::string& path, ScenarioSlot& slot) {
   } else if (path.starts_with(regions) && path.size() > regions.size()) {
     slot.name = path.substr(regions.size());
     return "patient.regions.<name>";
-  } else if (path.starts_with(insertion)) {
-    const auto close = path.find_first_not_of("0123456789", insertion.size());
-    const auto digits = close - insertion.size();
+  } else if (!list.empty()) {
+    const auto first = list.size() + 1;
+    const auto close = path.find_first_not_of("0123456789", first);
+    const auto digits = close - first;
     if (close != std::string::npos && path[close] == ']' && digits > 0 && digits < 4) {
-      slot.index = std::stoul(path.substr(insertion.size(), digits));
-      return "insertion[]" + path.substr(close + 1);
+      slot.index = std::stoul(path.substr(first, digits));
+      return std::string(list) + "[]" + path.substr(close + 1);
     }
     // The index is not a number: without it the key is unknown, but nearest_key() finds a similar one.
     const auto end = path.find(']');
-    return "insertion" + (end == std::string::npos ? "" : path.substr(end + 1));
+    return std::string(list) + (end == std::string::npos ? "" : path.substr(end + 1));
   }
   return path;
 }
@@ -165,8 +185,8 @@ std::vector<ScenarioSlot> slots(const Scenario& scenario, const std::string& pat
     for (const auto& [name, parameters] : scenario.tissue) result.push_back({name, 0});
   } else if (pattern.starts_with("patient.regions.")) {
     for (const auto& [name, region] : scenario.patient.regions) result.push_back({name, 0});
-  } else if (pattern.starts_with("insertion[]")) {
-    for (std::size_t k = 0; k < scenario.insertions.size(); ++k) result.push_back({"", k});
+  } else if (const std::string_view list = list_of(pattern); !list.empty()) {
+    for (std::size_t k = 0; k < entries_of(scenario, list); ++k) result.push_back({"", k});
   } else {
     result.emplace_back();
   }
@@ -246,7 +266,7 @@ std::optional<ScenarioValue> scenario_value(const Scenario& scenario, const std:
   if (!entry) return std::nullopt;
   const bool there = !(pattern.starts_with("tissue.<region>") && !scenario.tissue.contains(slot.name)) &&
                      !(pattern.starts_with("patient.regions.") && !scenario.patient.regions.contains(slot.name)) &&
-                     !(pattern.starts_with("insertion[]") && slot.index >= scenario.insertions.size());
+                     !(!list_of(pattern).empty() && slot.index >= entries_of(scenario, list_of(pattern)));
   return there ? entry->load(scenario, slot) : std::nullopt;
 }
 

@@ -33,6 +33,9 @@ std::optional<ScenarioValue> value_of(E x) {
 inline std::optional<ScenarioValue> value_of(const std::vector<std::string>& x) {
   return ScenarioValue{.type = Type::texts, .texts = x};
 }
+inline std::optional<ScenarioValue> value_of(const std::vector<double>& x) {
+  return ScenarioValue{.type = Type::numbers, .numbers = x};
+}
 template <std::size_t n>
 std::optional<ScenarioValue> value_of(const std::array<double, n>& x) {
   return ScenarioValue{.type = Type::numbers, .numbers = {x.begin(), x.end()}};
@@ -80,8 +83,8 @@ class ScenarioEntries {
   }
 
   template <class Field>
-  void boolean(const char* path, const char* meaning, Field field) {
-    add({path, Type::boolean, "", "", "true or false", meaning, ""}, field, {},
+  void boolean(const char* path, const char* meaning, Field field, Documented doc = {}) {
+    add({path, Type::boolean, "", "", "true or false", meaning, ""}, field, doc,
         [](auto& target, const ScenarioValue& v) -> std::string {
           target = v.boolean;
           return {};
@@ -126,6 +129,21 @@ class ScenarioEntries {
             numbers[i] = v.numbers[i];
           }
           target = numbers;
+          return {};
+        });
+  }
+
+  /// A list of numbers in ascending order; it may be empty.
+  template <class Field>
+  void ascending(const char* path, const char* unit, double low, double high, const char* meaning, Field field,
+                 Documented doc = {}) {
+    add({path, Type::numbers, unit, "", fmt::format("ascending numbers, each {} … {}", low, high), meaning, ""}, field,
+        doc, [=](auto& target, const ScenarioValue& v) -> std::string {
+          for (std::size_t i = 0; i < v.numbers.size(); ++i) {
+            if (!(v.numbers[i] >= low && v.numbers[i] <= high)) return "outside its range";
+            if (i > 0 && v.numbers[i] <= v.numbers[i - 1]) return "not in ascending order";
+          }
+          target = v.numbers;
           return {};
         });
   }

@@ -17,11 +17,19 @@ const TissueParameters& tissue(const Scenario& s, const Slot& slot) { return s.t
 std::string& region(Scenario& s, const Slot& slot) { return s.patient.regions[slot.name]; }
 const std::string& region(const Scenario& s, const Slot& slot) { return s.patient.regions.at(slot.name); }
 
-InsertionPlan& plan(Scenario& s, const Slot& slot) {
-  if (s.insertions.size() <= slot.index) s.insertions.resize(slot.index + 1);
-  return s.insertions[slot.index];
+/// An entry of a list, which grows to have it.
+template <class T>
+T& entry(std::vector<T>& list, const Slot& slot) {
+  if (list.size() <= slot.index) list.resize(slot.index + 1);
+  return list[slot.index];
 }
-const InsertionPlan& plan(const Scenario& s, const Slot& slot) { return s.insertions.at(slot.index); }
+template <class T>
+const T& entry(const std::vector<T>& list, const Slot& slot) {
+  return list.at(slot.index);
+}
+
+InsertionPlan& plan(Scenario& s, const Slot& slot) { return entry(s.insertions, slot); }
+const InsertionPlan& plan(const Scenario& s, const Slot& slot) { return entry(s.insertions, slot); }
 
 void describe_patient(ScenarioEntries& keys) {
   keys.text("patient.source",
@@ -289,9 +297,59 @@ void describe_implant(ScenarioEntries& keys) {
             "source model of the seeds (stylet info sources), or a file with one; none = the plan names it",
             [](auto& s, const Slot&) { return &s.plan.source; }, {.example = "\"i125_6711\""});
   keys.text("plan.goals",
-            "table of goals for the dose (CSV); none = goals for permanent implants of the prostate, and no goals "
-            "for temporary ones",
+            "table of goals for the dose (CSV); none = those of [[plan.goal]], or else goals for permanent implants of "
+            "the prostate, and no goals for temporary ones",
             [](auto& s, const Slot&) { return &s.plan.goals; }, {.example = "\"goals.csv\""});
+  keys.text("plan.label", "label of a plan with [[plan.needle]]", [](auto& s, const Slot&) { return &s.plan.label; },
+            {.example = "\"from my notes\""});
+  keys.number("plan.strength_U", "U", 0, 1000,
+              "air-kerma strength of a seed of [[plan.needle]]; 0 = each needle has its own",
+              [](auto& s, const Slot&) { return &s.plan.strength_U; });
+  keys.number("plan.prescription_Gy", "Gy", 0, 1000,
+              "prescribed dose of a plan with [[plan.needle]]; 0 = none, and no goals in per cent",
+              [](auto& s, const Slot&) { return &s.plan.prescription_Gy; });
+  keys.number("plan.base_mm", "mm", -1e4, 1e4,
+              "LPS z of the base plane, from which the retraction planes of [[plan.needle]] are counted to inferior",
+              [](auto& s, const Slot&) { return &s.plan.base_mm; }, {.example = "40"});
+  keys.number("plan.seed_length_mm", "mm", 0.1, 20, "length of a seed in a train of [[plan.needle]]",
+              [](auto& s, const Slot&) { return &s.plan.seed_length_mm; });
+  keys.number("plan.spacer_length_mm", "mm", 0.1, 20, "length of a spacer in a train of [[plan.needle]]",
+              [](auto& s, const Slot&) { return &s.plan.spacer_length_mm; });
+  keys.text("plan.needle[].hole", "template hole of the needle; needs template.centre_mm",
+            [](auto& s, const Slot& i) { return &entry(s.plan.needles, i).hole; }, {.example = "\"D4\""});
+  keys.vector<2>("plan.needle[].at_mm", "mm", -1e4, 1e4, "LPS x and y of the needle's line, instead of a hole",
+                 [](auto& s, const Slot& i) { return &entry(s.plan.needles, i).at_mm; }, {.example = "[10, 5]"});
+  keys.number(
+      "plan.needle[].retraction_mm", "mm", -500, 500,
+      "distance from the base plane to the retraction plane, to inferior; the centre of a train's first seed is "
+      "on this plane",
+      [](auto& s, const Slot& i) { return &entry(s.plan.needles, i).retraction_mm; });
+  keys.text("plan.needle[].train",
+            "seeds (S) and numbers of spacers from the needle's tip on, separated by -; the seeds of \"S-1-S\" are one "
+            "seed and one spacer apart",
+            [](auto& s, const Slot& i) { return &entry(s.plan.needles, i).train; }, {.example = "\"S-1-S-2-S\""});
+  keys.ascending("plan.needle[].seeds_mm", "mm", 0, 500,
+                 "distances of the seeds' centres from the retraction plane, to inferior, instead of a train",
+                 [](auto& s, const Slot& i) { return &entry(s.plan.needles, i).seeds_mm; },
+                 {.standard = "[]", .example = "[0, 10, 20]"});
+  keys.number("plan.needle[].strength_U", "U", 1e-6, 1000, "air-kerma strength of this needle's seeds",
+              [](auto& s, const Slot& i) { return &entry(s.plan.needles, i).strength_U; },
+              {.standard = "plan.strength_U", .example = "0.5"});
+  keys.boolean("plan.needle[].stranded", "whether the seeds of this needle are a strand",
+               [](auto& s, const Slot& i) { return &entry(s.plan.needles, i).stranded; },
+               {.standard = "seed.stranded", .example = "true"});
+  keys.text("plan.goal[].structure", "structure of the goal: prostate (the target), urethra, rectum, bladder, …",
+            [](auto& s, const Slot& i) { return &entry(s.plan.goal_table, i).structure; },
+            {.standard = "required", .example = "\"prostate\""});
+  keys.text("plan.goal[].metric", "figure of its dose–volume histogram, such as D90_percent, D2cc_Gy or V150_cc",
+            [](auto& s, const Slot& i) { return &entry(s.plan.goal_table, i).metric; },
+            {.standard = "required", .example = "\"D90_percent\""});
+  keys.text("plan.goal[].bound", "bound of the figure, with > or <",
+            [](auto& s, const Slot& i) { return &entry(s.plan.goal_table, i).bound; },
+            {.standard = "required", .example = "\">=100\""});
+  keys.text("plan.goal[].citation", "publication or protocol of the goal",
+            [](auto& s, const Slot& i) { return &entry(s.plan.goal_table, i).citation; },
+            {.example = "\"our protocol\""});
   keys.choice(
       "procedure.technique",
       "how seeds leave a needle; preloaded = the cannula is drawn back over a stylet that stays, and each seed "

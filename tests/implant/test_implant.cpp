@@ -127,6 +127,22 @@ TEST(Implant, in_a_mirrored_patient_is_mirrored_but_for_elements_chosen_by_round
   EXPECT_LT(off_mirror(scenario()), 0.05);
 }
 
+TEST(Implant, of_needles_that_say_so_themselves_has_strands_beside_loose_seeds) {
+  auto loads = load_needles(two_needles(), kSeed_mm, 0.0).value();
+  loads[1].stranded = true;
+  const auto history = simulate_implant(scenario(), test::box_patient(), loads, kSeed_mm, "case.toml");
+  ASSERT_TRUE(history);
+  double stranded = 0.0;
+  for (const SeedHistory& seed : history->seeds) {
+    if (seed.needle == 0) {
+      EXPECT_EQ(seed.by(SeedCause::strand), Vec3::Zero());
+    } else {
+      stranded = std::max(stranded, seed.by(SeedCause::strand).norm());
+    }
+  }
+  EXPECT_GT(stranded, 1e-3) << "loose seeds do not keep their distances";
+}
+
 TEST(Implant, of_needles_together_drops_all_seeds_and_needles_one_by_one_are_as_before) {
   Scenario s = scenario();
   const ImplantHistory one = simulated(s, test::box_patient(), two_needles());

@@ -32,6 +32,15 @@ struct DoseMetric {
 /// @param where place of the text for the message
 Result<DoseMetric> parse_metric(const std::string& text, const std::string& where);
 
+/// A goal as text, in the words of a table of goals.
+struct GoalText {
+  std::string structure, metric, bound, citation;
+};
+
+/// Parses a goal. Errors: no structure; a metric that parse_metric() refuses; a bound that is not > or <, perhaps with
+/// =, and a number. @param where place of the goal for the message
+Result<DoseGoal> parse_goal(const GoalText& text, const std::string& where);
+
 /// The value of a figure of a histogram [unit of the figure]; empty if it needs a prescribed dose and there is none.
 /// @param prescription_Gy prescribed dose [Gy]; 0: none is known
 [[nodiscard]] std::optional<double> figure_of(const DoseMetric& metric, const DoseVolume& dvh, double prescription_Gy);

@@ -5,6 +5,7 @@
 #include "stylet/dose/dose_plan.hpp"
 #include "stylet/sim/choices.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,7 @@ struct NeedleLoad {
   Vec3 direction = Vec3::UnitZ();        ///< unit vector LPS, towards the tip
   std::vector<LoadedSeed> seeds;         ///< from the tip on
   Vec3 aim_mm = Vec3::Zero();            ///< [mm] LPS, by which tip and seeds are aimed beside their plan on purpose
+  std::optional<bool> stranded;          ///< whether its seeds are a strand; unset: Scenario::Seed::stranded
   double beside_line_mm = 0.0;           ///< largest distance of a planned seed from the needle's line
 };
 

@@ -20,7 +20,7 @@ struct ImplantSettings {
 /// that was planned and the dose that the seeds give where they come to rest. It takes minutes. Seeds that were found
 /// on images are compared with those of the simulation; they are read and checked before anything is computed. The
 /// dwell positions of a temporary implant are where they are at the delivery.
-/// @param scenario with plan.file; paths in it are relative to the current folder
+/// @param scenario with a plan; paths in it are relative to the current folder
 /// @param where name of the scenario in messages
 /// Errors: no plan; those of reading plan, source and patient, of simulate_implant() and of evaluate_dose(); a plan
 /// with another frame of reference than the patient's contours; those of read_found_seeds() and check_found_seeds();

@@ -22,7 +22,7 @@ struct ImplantPlan {
 };
 
 /// Reads the plan of a scenario, the source model of its seeds and the structures of its patient.
-/// @param scenario with plan.file; paths in it are relative to the current folder
+/// @param scenario with a plan; paths in it are relative to the current folder
 /// @param where name of the scenario in messages
 /// Errors: no plan; those of reading plan, source and patient and of load_needles() or load_catheters(); a plan with
 /// another frame of reference than the patient's contours; a temporary implant with a key that is for permanent ones.

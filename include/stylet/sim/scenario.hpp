@@ -157,11 +157,39 @@ struct Scenario {
   } coupling;
   TemplateGrid grid;
   std::vector<InsertionPlan> insertions;
-  /// The plan of an implant, for `stylet implant`; without a file the scenario has none.
+  /// A needle of a plan that is written in the scenario, with its train of permanent seeds.
+  struct PlanNeedle {
+    std::string hole;                            ///< template hole; either this or at_mm is needed
+    std::optional<std::array<double, 2>> at_mm;  ///< LPS x and y of the needle's line, which is along z
+    double retraction_mm = 0.0;                  ///< distance of the retraction plane inferior of ImplantPlan::base_mm
+    std::string train;  ///< seeds and spacers from the tip on, such as "S-1-S"; either this or seeds_mm is needed
+    std::vector<double> seeds_mm;      ///< distances of the seeds' centres inferior of the retraction plane
+    std::optional<double> strength_U;  ///< unset: that of the plan
+    std::optional<bool> stranded;      ///< unset: Seed::stranded
+    bool operator==(const PlanNeedle&) const = default;
+  };
+  /// A goal of a plan that is written in the scenario: a DoseGoal with its bound as text.
+  struct PlanGoal {
+    std::string structure, metric, bound, citation;
+    bool operator==(const PlanGoal&) const = default;
+  };
+  /// The plan of an implant, for `stylet implant`: a file or a list of needles; with neither the scenario has none.
   struct ImplantPlan {
     std::string file;    ///< DICOM RTPLAN, JSON or CSV; relative to the scenario file
     std::string source;  ///< source model, or the file of one; empty: the plan names it
-    std::string goals;   ///< table of goals; empty: those of the program
+    std::string goals;   ///< file with a table of goals; empty: goal_table, or those of the program
+    // Of a plan that is written in the scenario.
+    std::string label;
+    double strength_U = 0.0;        ///< air-kerma strength of a seed; 0: each needle has its own
+    double prescription_Gy = 0.0;   ///< prescribed dose; 0: none
+    std::optional<double> base_mm;  ///< LPS z of the base plane, where the retraction is 0
+    double seed_length_mm = 4.5;    ///< in a train
+    double spacer_length_mm = 5.5;  ///< in a train
+    std::vector<PlanNeedle> needles;
+    std::vector<PlanGoal> goal_table;
+
+    /// Whether the scenario has a plan.
+    [[nodiscard]] bool is_given() const { return !file.empty() || !needles.empty(); }
     bool operator==(const ImplantPlan&) const = default;
   } plan;
   /// How the needles of the plan go in and out.

@@ -45,22 +45,32 @@ Result<> PlanBuilder::add(PlannedSource source, const std::string& where) {
 }
 
 Result<> PlanBuilder::add(const PlanNeedle& needle, const PlanTemplate& grid, const std::string& where) {
-  const auto offset = grid.grid.offset_mm(needle.hole);
-  if (!offset)
-    return input_error(fmt::format("{}, hole '{}'", where, needle.hole), offset.error().what, offset.error().cure);
-  const Result<std::vector<double>> seeds = seeds_of_train(needle.train, grid.lengths, where);
-  if (!seeds) return seeds.error();
+  Vec3 on_base = grid.origin_mm;
+  if (needle.at_mm) {
+    on_base = *needle.at_mm;
+  } else {
+    const auto offset = grid.grid.offset_mm(needle.hole);
+    if (!offset)
+      return input_error(fmt::format("{}, hole '{}'", where, needle.hole), offset.error().what, offset.error().cure);
+    on_base += (*offset)[0] * grid.left + (*offset)[1] * grid.anterior;
+  }
   if (!std::isfinite(needle.retraction_mm))
     return input_error(where, "the retraction is not a finite number", "Give the retraction plane in mm");
-  const Vec3 hole = grid.origin_mm + (*offset)[0] * grid.left + (*offset)[1] * grid.anterior;
-  const double end_mm = grid.tip_offset_mm.value_or(0.5 * grid.lengths.seed_mm) - needle.retraction_mm;
-  for (const double along : *seeds) {
+  std::vector<double> beyond_mm;  // of the retraction plane, superior
+  for (const double distance : needle.seeds_mm) beyond_mm.push_back(-distance);
+  if (needle.seeds_mm.empty()) {
+    const Result<std::vector<double>> seeds = seeds_of_train(needle.train, grid.lengths, where);
+    if (!seeds) return seeds.error();
+    const double end_mm = grid.tip_offset_mm.value_or(0.5 * grid.lengths.seed_mm);
+    for (const double along : *seeds) beyond_mm.push_back(end_mm - along);
+  }
+  for (const double beyond : beyond_mm) {
     PlannedSource seed;
-    seed.at_mm = hole + (end_mm - along) * grid.direction;
+    seed.at_mm = on_base + (beyond - needle.retraction_mm) * grid.direction;
     seed.axis = grid.direction;
     seed.has_axis = true;
     seed.strength_U = needle.strength_U;
-    seed.needle = needle.hole;
+    seed.needle = needle.at_mm ? needle.name : needle.hole;
     if (Result<> added = add(seed, where); !added) return added;
   }
   return Ok{};

@@ -7,6 +7,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace stylet::detail {
 
@@ -24,6 +25,9 @@ struct PlanTemplate {
 /// A needle with its train of seeds and spacers.
 struct PlanNeedle {
   std::string hole, train;
+  std::optional<Vec3> at_mm;     ///< [mm] LPS, where its line meets the base plane, instead of a hole
+  std::vector<double> seeds_mm;  ///< distances of the seeds' centres from the retraction plane, instead of a train
+  std::string name;              ///< of a needle without a hole
   double retraction_mm = 0.0;
   double strength_U = 0.0;
 };

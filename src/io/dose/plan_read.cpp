@@ -125,18 +125,11 @@ Result<std::vector<DoseGoal>> read_goals(const fs::path& path) {
   }
   std::vector<DoseGoal> goals;
   for (std::size_t row = 0; row < table->rows.size(); ++row) {
-    DoseGoal goal{table->text(row, "structure"), table->text(row, "metric"), true, 0.0, table->text(row, "citation")};
-    if (const auto metric = parse_metric(goal.metric, table->where(row)); !metric) return metric.error();
-    std::string bound = table->text(row, "bound");
-    goal.at_least = bound.starts_with('>');
-    if (!bound.starts_with('>') && !bound.starts_with('<'))
-      return input_error(table->where(row), "the bound '" + bound + "' does not begin with > or <",
-                         "Write e.g. >=90 or <150");
-    bound.erase(0, bound.size() > 1 && bound[1] == '=' ? 2 : 1);
-    const auto number = detail::to_number(bound);
-    if (!number) return input_error(table->where(row), "the bound has no number", "Write e.g. >=90 or <150");
-    goal.bound = *number;
-    goals.push_back(goal);
+    const Result<DoseGoal> goal = parse_goal({table->text(row, "structure"), table->text(row, "metric"),
+                                              table->text(row, "bound"), table->text(row, "citation")},
+                                             table->where(row));
+    if (!goal) return goal.error();
+    goals.push_back(*goal);
   }
   return goals;
 }

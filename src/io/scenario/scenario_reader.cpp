@@ -3,6 +3,7 @@
 
 #include "detail/file_kind.hpp"
 #include "stylet/core/nearest_name.hpp"
+#include "stylet/dose/goals.hpp"
 #include "stylet/io/scenario_io.hpp"
 
 #include <fmt/format.h>
@@ -166,10 +167,13 @@ Result<> ScenarioReader::take(const TomlItem& item, const std::string& where) {
   const std::string pattern = pattern_of(item.path);
   if (item.kind == TomlItem::Kind::table) {
     if (Result<> known = check_table(pattern, path, where); !known) return known;
-    // An empty [[insertion]] counts as an insertion.
-    if (pattern == "insertion[]" && item.path[1] == fmt::format("[{}]", scenario_.insertions.size())) {
-      scenario_.insertions.emplace_back();
-    }
+    // An empty [[insertion]] counts as an insertion, and so do the other tables that form lists.
+    const auto begin = [&](const char* list, auto& entries) {
+      if (pattern == list && item.path.back() == fmt::format("[{}]", entries.size())) entries.emplace_back();
+    };
+    begin("insertion[]", scenario_.insertions);
+    begin("plan.needle[]", scenario_.plan.needles);
+    begin("plan.goal[]", scenario_.plan.goal_table);
     places_[path] = where;
     return Ok{};
   }
@@ -230,6 +234,15 @@ std::string ScenarioReader::place(std::string path) const {
 Result<Scenario> ScenarioReader::finish() && {
   const auto checked = check_scenario(scenario_, [this](const std::string& path) { return place(path); });
   if (!checked) return checked.error();
+  for (std::size_t i = 0; i < scenario_.plan.goal_table.size(); ++i) {
+    const Scenario::PlanGoal& goal = scenario_.plan.goal_table[i];
+    const std::string name = fmt::format("plan.goal[{}]", i);
+    const Result<DoseGoal> parsed = parse_goal({goal.structure, goal.metric, goal.bound, goal.citation}, place(name));
+    if (parsed) continue;
+    Error error = parsed.error();
+    error.what = name + ": " + error.what;
+    return error;
+  }
   return std::move(scenario_);
 }
 

@@ -43,7 +43,12 @@ constexpr std::array kTables{
         "One needle going in and out: through a template hole, through a point in a direction or towards a target, or "
         "along a recorded motion. Repeat the table for further needles, which follow one after the other."},
     TableText{"plan", "[plan]",
-              "A plan of permanent seeds, for stylet implant. A scenario with a plan needs no [[insertion]]."},
+              "A plan of permanent seeds, for stylet implant: a file, or needles in the scenario ([[plan.needle]]). A "
+              "scenario with a plan needs no [[insertion]]."},
+    TableText{"plan.needle[]", "#[[plan.needle]]",
+              "A needle of the plan with its permanent seeds, instead of plan.file. It is along z, as a template holds "
+              "it. Repeat the table for further needles."},
+    TableText{"plan.goal[]", "#[[plan.goal]]", "A goal for the dose, instead of a file with plan.goals."},
     TableText{"procedure", "[procedure]", "How the needles of the plan go in and out."},
     TableText{"seed", "[seed]", "What becomes of a seed, beside the motion of the tissue."},
     TableText{"oedema", "[oedema]", "Swelling of the gland after the implantation, for the dose."},

@@ -40,7 +40,8 @@ std::vector<std::string> parts_of(const std::string& key) {
     const auto dot = find_unquoted(key, '.', start);
     std::string part = unquoted(trimmed(std::string_view(key).substr(start, dot - start)));
     const auto bracket = part.find('[');
-    if (start == 0 && bracket != std::string::npos && bracket > 0 && part.back() == ']') {
+    const bool may_be_list = start == 0 || (parts.size() == 1 && parts.front() == "plan");
+    if (may_be_list && bracket != std::string::npos && bracket > 0 && part.back() == ']') {
       parts.push_back(part.substr(0, bracket));
       part = part.substr(bracket);
     }

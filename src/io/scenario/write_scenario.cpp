@@ -74,10 +74,13 @@ std::string to_toml(const Scenario& scenario) {
         lines.push_back({key_text(name) + " = " + to_string({.type = ScenarioValue::Type::text, .text = region}), ""});
       }
       if (!lines.empty()) out += table_text("[patient.regions]", lines);
-    } else if (pattern == "insertion[]") {
-      for (std::size_t i = 0; i < scenario.insertions.size(); ++i) {
-        out += table_text("[[insertion]]", lines_of(scenario, pattern, fmt::format("insertion[{}]", i)));
-      }
+    } else if (pattern.ends_with("[]")) {
+      const std::string list = pattern.substr(0, pattern.size() - 2);
+      const std::size_t entries = list == "insertion"     ? scenario.insertions.size()
+                                  : list == "plan.needle" ? scenario.plan.needles.size()
+                                                          : scenario.plan.goal_table.size();
+      for (std::size_t i = 0; i < entries; ++i)
+        out += table_text("[[" + list + "]]", lines_of(scenario, pattern, fmt::format("{}[{}]", list, i)));
     } else {
       out += table_text(pattern.empty() ? "" : "[" + pattern + "]", lines_of(scenario, pattern, pattern));
     }

@@ -2,6 +2,8 @@
 // Plans in JSON and CSV.
 #include "io/dose/dose_folder.hpp"
 #include "stylet/io/dose_io.hpp"
+#include "stylet/io/scenario_io.hpp"
+#include "stylet/io/scenario_plan.hpp"
 
 #include <gtest/gtest.h>
 
@@ -71,6 +73,104 @@ TEST_F(PlanText, in_csv_says_the_same_as_in_json) {
   EXPECT_LT((needles.sources[0].at_mm - Vec3(10, 20, 30)).norm(), 1e-12);
   EXPECT_LT((needles.sources[1].at_mm - Vec3(10, 20, 20)).norm(), 1e-12);
   EXPECT_LT((needles.sources[2].at_mm - Vec3(15, 20, 25 + 2.25 - 5.5 - 2.25)).norm(), 1e-12);
+}
+
+TEST_F(PlanText, in_a_scenario_says_the_same_as_in_csv) {
+  const DosePlan csv = read_plan(file("needles.csv",
+                                      "# strength_U: 0.5\n# template_origin_mm: 10 20 30\n# prescription_Gy: 145\n"
+                                      "# label: mine\n# source: i125_6711\nhole,retraction_mm,train,strength_U\n"
+                                      "D4,0,S-1-S,\nd4,5,1-S,0.6\ne3.5,2.5,S-2-S-S,\n"))
+                           .value();
+  const Result<Scenario> scenario = parse_scenario(R"(
+[patient]
+source = "phantom"
+[template]
+centre_mm = [10, 20]
+[plan]
+label = "mine"
+strength_U = 0.5
+prescription_Gy = 145
+base_mm = 30
+[[plan.needle]]
+hole = "D4"
+train = "S-1-S"
+[[plan.needle]]
+hole = "d4"
+retraction_mm = 5
+train = "1-S"
+strength_U = 0.6
+[[plan.needle]]
+hole = "e3.5"
+retraction_mm = 2.5
+train = "S-2-S-S"
+)",
+                                                   "case.toml");
+  ASSERT_TRUE(scenario) << scenario.error().message();
+  const DosePlan plan = plan_of_scenario(*scenario, "case.toml").value();
+  EXPECT_EQ(plan.file, "case.toml");
+  EXPECT_EQ(plan.label, csv.label);
+  EXPECT_EQ(plan.implant, csv.implant);
+  EXPECT_EQ(plan.prescription_Gy, csv.prescription_Gy);
+  ASSERT_EQ(plan.sources.size(), csv.sources.size());
+  for (std::size_t k = 0; k < csv.sources.size(); ++k) {
+    EXPECT_EQ(plan.sources[k].at_mm, csv.sources[k].at_mm) << k;
+    EXPECT_EQ(plan.sources[k].axis, csv.sources[k].axis) << k;
+    EXPECT_EQ(plan.sources[k].has_axis, csv.sources[k].has_axis) << k;
+    EXPECT_EQ(plan.sources[k].strength_U, csv.sources[k].strength_U) << k;
+    EXPECT_EQ(plan.sources[k].needle, csv.sources[k].needle) << k;
+  }
+}
+
+TEST_F(PlanText, in_a_scenario_may_give_lines_and_places_instead_of_holes_and_trains) {
+  Scenario scenario;
+  scenario.plan.base_mm = 30.0;
+  scenario.plan.strength_U = 0.5;
+  scenario.plan.needles.resize(2);
+  scenario.plan.needles[0].at_mm = {1.0, 2.0};
+  scenario.plan.needles[0].retraction_mm = 5.0;
+  scenario.plan.needles[0].seeds_mm = {0.0, 10.0, 25.5};
+  scenario.plan.needles[1].at_mm = {-1.0, 2.0};
+  scenario.plan.needles[1].train = "S-1-S";
+  const DosePlan plan = plan_of_scenario(scenario, "case.toml").value();
+  ASSERT_EQ(plan.sources.size(), 5U);
+  for (const auto& [seed, z] : {std::pair(0, 25.0), std::pair(1, 15.0), std::pair(2, -0.5)})
+    EXPECT_LT((plan.sources[static_cast<std::size_t>(seed)].at_mm - Vec3(1, 2, z)).norm(), 1e-12);
+  EXPECT_LT((plan.sources[4].at_mm - Vec3(-1, 2, 20)).norm(), 1e-12);
+  EXPECT_EQ(plan.sources[0].needle, "needle 1");
+  EXPECT_EQ(plan.sources[4].needle, "needle 2");
+
+  const auto says = [&](const std::string& part) {
+    const Result<DosePlan> refused = plan_of_scenario(scenario, "case.toml");
+    ASSERT_FALSE(refused.ok());
+    EXPECT_NE(refused.error().message().find(part), std::string::npos) << refused.error().message();
+  };
+  scenario.plan.needles[1].train = "S-x-S";
+  says("case.toml, plan.needle[1]: element 2 of the train 'S-x-S' is 'x'");
+  scenario.plan.needles[1].train = "S";
+  scenario.plan.strength_U = 0.0;
+  says("case.toml, plan.needle[0]: the air-kerma strength is missing");
+  scenario.plan = {};
+  says("case.toml: the scenario has no plan");
+}
+
+TEST_F(PlanText, goals_of_a_scenario_are_those_of_the_same_table_as_csv) {
+  const auto csv = read_goals(file("goals.csv",
+                                   "structure,metric,bound,citation\nprostate,D90_percent,>=100,our protocol\n"
+                                   "rectum,D2cc_Gy,<145,\n"))
+                       .value();
+  Scenario scenario;
+  EXPECT_FALSE(goals_of_scenario(scenario, "case.toml").value().has_value());
+  scenario.plan.goal_table = {{"prostate", "D90_percent", ">=100", "our protocol"}, {"rectum", "D2cc_Gy", "<145", ""}};
+  const auto tables = goals_of_scenario(scenario, "case.toml").value();
+  ASSERT_TRUE(tables.has_value());
+  ASSERT_EQ(tables->size(), csv.size());
+  for (std::size_t k = 0; k < csv.size(); ++k) {
+    EXPECT_EQ((*tables)[k].structure, csv[k].structure);
+    EXPECT_EQ((*tables)[k].metric, csv[k].metric);
+    EXPECT_EQ((*tables)[k].at_least, csv[k].at_least);
+    EXPECT_EQ((*tables)[k].bound, csv[k].bound);
+    EXPECT_EQ((*tables)[k].citation, csv[k].citation);
+  }
 }
 
 TEST_F(PlanText, that_is_written_is_read_again_exactly) {

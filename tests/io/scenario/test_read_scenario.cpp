@@ -322,6 +322,55 @@ TEST(ReadScenario, refuses_what_does_not_go_together_and_names_the_line) {
               {"line 4: coupling.spacing_mm = 1 is less than needle.diameter_mm = 1.27"});
 }
 
+TEST(ReadScenario, takes_the_needles_and_goals_of_a_plan) {
+  const auto scenario = read(
+      kHead +
+      "[template]\ncentre_mm = [0, 5]\n[plan]\nstrength_U = 0.5\nbase_mm = 40\n[[plan.needle]]\nhole = \"D4\"\ntrain = "
+      "\"S-1-S\"\n[[plan.needle]]\nat_mm = [10, 5]\nseeds_mm = [0, 10]\nstranded = true\n[[plan.goal]]\nstructure = "
+      "\"prostate\"\nmetric = \"D90_percent\"\nbound = \">=100\"\n");
+  ASSERT_TRUE(scenario.ok()) << scenario.error().message();
+  EXPECT_TRUE(scenario->plan.is_given());
+  ASSERT_EQ(scenario->plan.needles.size(), 2U);
+  EXPECT_EQ(scenario->plan.needles[0].train, "S-1-S");
+  EXPECT_FALSE(scenario->plan.needles[0].stranded.has_value());
+  EXPECT_EQ(scenario->plan.needles[1].seeds_mm, (std::vector<double>{0.0, 10.0}));
+  EXPECT_TRUE(scenario->plan.needles[1].stranded.value_or(false));
+  ASSERT_EQ(scenario->plan.goal_table.size(), 1U);
+  EXPECT_EQ(scenario->plan.goal_table[0].bound, ">=100");
+}
+
+TEST(ReadScenario, refuses_a_plan_that_does_not_fit_together_and_names_the_line) {
+  const std::string plan = kHead + "[plan]\nbase_mm = 40\nstrength_U = 0.5\n";
+  const std::string needle = "[[plan.needle]]\nat_mm = [0, 5]\ntrain = \"S\"\n";
+  ASSERT_TRUE(read(plan + needle).ok());
+  expect_says(refused(plan + "file = \"plan.csv\"\n" + needle),
+              {"case.toml, line 6: plan.file = ", "there are 1 [[plan.needle]]", "not as both"});
+  expect_says(refused(kHead + "[plan]\n" + needle), {"line 3: ", "plan.base_mm is missing", "LPS z of the base plane"});
+  expect_says(refused(plan + kTail), {"line 3: ", "belong to [[plan.needle]], and there is none"});
+  expect_says(refused(plan + "[[plan.needle]]\ntrain = \"S\"\n"),
+              {"line 6: plan.needle[0] has neither hole nor at_mm", "at_mm = [10, 5]"});
+  expect_says(refused(plan + needle + "hole = \"D4\"\n"), {"line 6: plan.needle[0] has both hole and at_mm"});
+  expect_says(refused(plan + "[[plan.needle]]\nat_mm = [0, 5]\n"),
+              {"line 6: plan.needle[0] has neither train nor seeds_mm", "seeds_mm = [0, 10]"});
+  expect_says(refused(plan + needle + "seeds_mm = [0]\n"), {"line 6: plan.needle[0] has both train and seeds_mm"});
+  expect_says(refused(plan + needle + "[[plan.needle]]\nat_mm = [0, 5]\nseeds_mm = [10, 0]\n"),
+              {"line 11", "plan.needle[1].seeds_mm = [10, 0] is not in ascending order"});
+  const std::string in_hole = "[[plan.needle]]\nhole = \"D4\"\ntrain = \"S\"\n";
+  expect_says(refused(plan + in_hole), {"line 7: plan.needle[0].hole = \"D4\"", "template.centre_mm", "at_mm instead"});
+  const std::string centred = plan + "[template]\ncentre_mm = [0, 5]\n";
+  expect_says(refused(centred + in_hole + in_hole),
+              {"line 12: plan.needle[1].hole = \"D4\"", "plan.needle[0] as well"});
+  expect_says(refused(centred + "[[plan.needle]]\nhole = \"Z4\"\ntrain = \"S\"\n"),
+              {"line 9: plan.needle[0].hole = \"Z4\"", "for example D4"});
+  expect_says(refused(plan + needle + "[[plan.goal]]\nstructure = \"prostate\"\nmetric = \"D90\"\nbound = \">1\"\n"),
+              {"line 9: plan.goal[0]: 'D90' is not a figure", "D90_percent"});
+  expect_says(
+      refused(plan + needle + "[[plan.goal]]\nstructure = \"prostate\"\nmetric = \"D90_Gy\"\nbound = \"145\"\n"),
+      {"line 9: plan.goal[0]: the bound '145' does not begin with > or <", ">=90"});
+  expect_says(refused(plan + "[[plan.nedle]]\n"),
+              {"line 6", "unknown table plan.nedle", "Did you mean [[plan.needle]]?"});
+}
+
 TEST(ReadScenario, puts_a_preset_under_what_is_given_wherever_it_stands) {
   const auto young_kPa = [](const Scenario& s) { return s.tissue.at("body").young_kPa; };
   const double typical = default_tissue("body").young_kPa;

@@ -19,6 +19,17 @@ Scenario minimal() {
   return s;
 }
 
+/// With a needle and a goal of a plan of its own.
+Scenario with_plan_needle(Scenario s) {
+  s.plan.base_mm = 40.0;
+  s.plan.needles.resize(1);
+  s.plan.needles[0].at_mm = {10.0, 5.5};
+  s.plan.needles[0].seeds_mm = {0.0, 10.0};
+  s.plan.needles[0].strength_U = 0.5;
+  s.plan.goal_table = {{"prostate", "D90_percent", ">=100", "our protocol"}};
+  return s;
+}
+
 Scenario read_back(const std::string& text) {
   const ScratchFolder folder;
   const auto scenario = read_scenario(folder.write("case.toml", text));
@@ -48,6 +59,32 @@ std::string uncommented(const std::string& text) {
 }  // namespace
 
 TEST(ToToml, reads_back_as_the_same_scenario) { EXPECT_EQ(read_back(to_toml(minimal())), minimal()); }
+
+TEST(ToToml, keeps_the_needles_and_goals_of_a_plan) {
+  Scenario s = minimal();
+  s.insertions.clear();
+  s.grid.centre_mm = {1.5, -2.0};
+  s.plan.label = "from \"notes\"";
+  s.plan.source = "i125_6711";
+  s.plan.strength_U = 0.5;
+  s.plan.prescription_Gy = 145.0;
+  s.plan.base_mm = 40.25;
+  s.plan.needles.resize(3);
+  s.plan.needles[0].hole = "D4";
+  s.plan.needles[0].train = "S-1-S";
+  s.plan.needles[1].at_mm = {10.0, 5.5};
+  s.plan.needles[1].retraction_mm = 5.0;
+  s.plan.needles[1].seeds_mm = {0.0, 10.0, 25.5};
+  s.plan.needles[1].strength_U = 0.6;
+  s.plan.needles[1].stranded = true;
+  s.plan.needles[2].hole = "e3.5";
+  s.plan.needles[2].train = "S";
+  s.plan.needles[2].stranded = false;
+  s.plan.goal_table = {{"prostate", "D90_percent", ">=100", "our protocol"}, {"rectum", "D2cc_Gy", "<145", ""}};
+  const Scenario back = read_back(to_toml(s));
+  EXPECT_EQ(back.plan, s.plan);
+  EXPECT_EQ(back, s);
+}
 
 TEST(ToToml, reads_back_whatever_is_set) {
   Scenario s = minimal();
@@ -113,7 +150,7 @@ TEST(ToToml, reads_back_whatever_is_set) {
 
 TEST(ToToml, keeps_every_number_to_its_last_bit) {
   std::mt19937_64 random(7);
-  Scenario s = minimal();
+  Scenario s = with_plan_needle(minimal());
   for (const ScenarioKey& key : scenario_keys()) {
     if (key.type != ScenarioValue::Type::number || key.path.find_first_of("<[") != std::string::npos) continue;
     const double low = std::stod(key.range);
@@ -139,14 +176,15 @@ TEST(ToToml, keeps_a_plan_of_seeds_and_its_procedure) {
 }
 
 TEST(ToToml, writes_every_key_that_has_a_value_with_its_unit) {
-  Scenario s = minimal();
+  Scenario s = with_plan_needle(minimal());
   s.tissue["prostate"] = default_tissue("prostate");
   const auto lines = lines_of(to_toml(s));
   for (const ScenarioKey& key : scenario_keys()) {
     if (key.standard == "none" || key.path.ends_with(".direction") || key.path == "template.centre_mm" ||
         key.path == "patient.regions.<name>" || key.path == "tissue.creep")
       continue;
-    if (key.path.starts_with("needle.") && !scenario_value(s, key.path)) continue;  // computed from other keys
+    if (key.path.starts_with("needle.") && !scenario_value(s, key.path)) continue;   // computed from other keys
+    if (key.path.ends_with(".stranded") && key.path.starts_with("plan.")) continue;  // the default is seed.stranded
     const std::string name = key.path.substr(key.path.rfind('.') + 1) + " = ";
     const auto line =
         std::find_if(lines.begin(), lines.end(), [&](const std::string& l) { return l.starts_with(name); });
@@ -159,7 +197,8 @@ TEST(Schema, has_every_key_once) {
   const auto lines = lines_of(schema_text());
   std::multiset<std::string> found;
   std::string table;
-  for (const std::string& line : lines) {
+  for (std::string line : lines) {
+    if (line.starts_with("#[[")) line.erase(0, 1);  // a list that may be empty is commented out with its keys
     if (line.starts_with("["))
       table = line.substr(line.find_first_not_of('['), line.find(']') - line.find_first_not_of('[')) +
               (line.starts_with("[[") ? "[]." : ".");
@@ -222,8 +261,9 @@ TEST(Schema, runs_once_source_and_hole_are_uncommented) {
 
 TEST(Schema, shows_values_that_are_taken) {
   std::string text = uncommented(schema_text());
-  // Keep only one of the keys that determine the needle's way.
-  for (const char* other : {"\nentry_mm", "\ndirection", "\ntarget_mm", "\nmotion"})
+  // Keep only one of the keys that determine the needle's way, and one of those that determine plan, seeds and goals.
+  for (const char* other :
+       {"\nentry_mm", "\ndirection", "\ntarget_mm", "\nmotion", "\nfile", "\ngoals", "\nat_mm", "\nseeds_mm"})
     text.insert(text.find(other) + 1, "#");
   const Scenario s = read_back(text);
   EXPECT_EQ(s.tissue.at("prostate"), default_tissue("prostate"));

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 namespace stylet::results {
 namespace {
 
@@ -47,6 +49,19 @@ std::string together_text(NeedlesTogether together) {
 std::string stabilising_text(const std::vector<std::string>& holes) {
   if (holes.empty()) return "none";
   return fmt::format("{}, from the first needle to the last", fmt::join(holes, ", "));
+}
+
+std::string strand_text(const Scenario& scenario) {
+  std::string text = scenario.seed.stranded ? "stranded: the seeds of a needle keep their distances"
+                                            : "loose: each seed moves with the tissue around it";
+  const auto& needles = scenario.plan.needles;
+  const auto others = std::count_if(needles.begin(), needles.end(), [&](const Scenario::PlanNeedle& needle) {
+    return needle.stranded.value_or(scenario.seed.stranded) != scenario.seed.stranded;
+  });
+  if (others > 0)
+    text += fmt::format("; in {} of {} needles they are {}", others, needles.size(),
+                        scenario.seed.stranded ? "loose" : "stranded");
+  return text;
 }
 
 std::string release_text(const Scenario::Seed& seed) {
@@ -104,9 +119,7 @@ std::string seed_facts(const Scenario& scenario, Implant implant) {
            definition("Oedema", "none but what the tissue’s creep is: the gland does not swell");
   }
   const Scenario::Seed& seed = scenario.seed;
-  return definition("Seeds", seed.stranded ? "stranded: the seeds of a needle keep their distances"
-                                           : "loose: each seed moves with the tissue around it") +
-         definition("Release", release_text(seed)) +
+  return definition("Seeds", strand_text(scenario)) + definition("Release", release_text(seed)) +
          definition("Loss", seed.loss_percent > 0.0
                                 ? fmt::format("each seed is lost with a probability of {:g} %", seed.loss_percent)
                                 : "no seed is lost") +
