@@ -32,5 +32,6 @@ std::vector<RowSpec> prostate_motion_rows();
 std::vector<RowSpec> in_patients_rows();
 std::vector<RowSpec> dose_rows();
 std::vector<RowSpec> implant_rows();
+std::vector<RowSpec> implant_dose_rows();
 
 }  // namespace stylet::validate

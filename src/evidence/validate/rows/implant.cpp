@@ -2,6 +2,7 @@
 // Compares an implant in the demo patient with what is measured in patients: how far seeds come to rest from their
 // plan, and how needles in place move and hold the gland.
 #include "../rows.hpp"
+#include "demo_implant.hpp"
 #include "published_values.hpp"
 #include "stylet/geom/centroid.hpp"
 #include "stylet/implant/seed_errors.hpp"
@@ -20,29 +21,8 @@ namespace {
 
 using namespace published;
 
-constexpr double kSeedLength_mm = 4.5;
-constexpr double kSpeed_mm_per_s = 40.0;
 /// Largest part of a needle's steps that may be without a balance.
 constexpr double kMostWithoutBalance = 0.01;
-
-Scenario implant_scenario() {
-  Scenario scenario = measure::demo_scenario();
-  scenario.insertions.clear();
-  scenario.run.dt_ms = 4.0;
-  scenario.output.frames_per_s = 0.0;
-  scenario.procedure.speed_mm_per_s = kSpeed_mm_per_s;
-  scenario.procedure.retract_speed_mm_per_s = kSpeed_mm_per_s;
-  scenario.procedure.drop_speed_mm_per_s = 10.0;
-  return scenario;
-}
-
-std::vector<int> gland_of(const TetMesh& mesh) {
-  std::vector<int> gland;
-  for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
-    if (mesh.regions[r] == "prostate") gland.push_back(static_cast<int>(r));
-  }
-  return gland;
-}
 
 /// A needle with four seeds, 10 mm apart around the height of the gland's centre.
 NeedleLoad loaded_needle(const Vec3& centre, double x, double y, std::size_t number) {
@@ -135,7 +115,7 @@ class NeedlesInPlace {
       InsertionPlan plan;
       plan.entry_mm = std::array<double, 3>{centre.x() + beside.x(), centre.y() + beside.y(), centre.z()};
       plan.direction = std::array<double, 3>{0.0, 0.0, 1.0};
-      plan.speed_mm_per_s = kSpeed_mm_per_s;
+      plan.speed_mm_per_s = kImplantSpeed_mm_per_s;
       scenario.insertions.push_back(plan);
     }
     auto model = Model::compile(scenario, mesh, "needles in place");

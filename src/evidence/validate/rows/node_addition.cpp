@@ -15,7 +15,7 @@ namespace stylet::validate {
 
 namespace {
 
-constexpr int kNodes = 100;
+constexpr int kAddedNodes = 100;
 constexpr int kEvery = 20;  ///< additions between two checks
 const std::vector<Material> kMaterials{{0.04, 0.45}, {0.12, 0.40}};
 
@@ -71,7 +71,7 @@ Result<Curve> add_nodes(const Cube& cube, ContactCompliance& compliance, const s
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> share(0.05, 1.0);
   std::uniform_int_distribution<Index> pick(0, cube.tissue->mesh().tet_count() - 1);
-  for (int added = 0; added < kNodes;) {
+  for (int added = 0; added < kAddedNodes;) {
     MaterialPoint at{pick(random), Vec4(share(random), share(random), share(random), share(random))};
     const int local = static_cast<int>(random() % 4);
     if (placement == Placement::face) at.weights[local] = 0.0;
@@ -100,9 +100,10 @@ Result<Finding> node_additions(Context&) {
   using Engine = paper::DenseInverse::Engine;
   for (const Placement placement : {Placement::interior, Placement::face}) {
     const std::string rule = placement == Placement::interior ? "interior" : "paper";
-    TrackCompliance condensed(cube->store, *cube->locator, kNodes);
-    paper::InverseCompliance woodbury(cube->tissue, *cube->locator, cube->inverse, Engine::woodbury, false, kNodes);
-    paper::InverseCompliance switches(cube->tissue, *cube->locator, cube->inverse, Engine::bcs, false, kNodes);
+    TrackCompliance condensed(cube->store, *cube->locator, kAddedNodes);
+    paper::InverseCompliance woodbury(cube->tissue, *cube->locator, cube->inverse, Engine::woodbury, false,
+                                      kAddedNodes);
+    paper::InverseCompliance switches(cube->tissue, *cube->locator, cube->inverse, Engine::bcs, false, kAddedNodes);
     struct Engines {
       const char* name;
       ContactCompliance& compliance;
@@ -122,7 +123,7 @@ Result<Finding> node_additions(Context&) {
       "{} nodes are added at random places to a mesh of {} nodes, with both rules and three engines: shortcut and "
       "bordered update (condensed), Woodbury’s formula, and boundary condition switches. The value is the largest "
       "error.",
-      kNodes, cube->tissue->mesh().node_count());
+      kAddedNodes, cube->tissue->mesh().node_count());
   return finding;
 }
 

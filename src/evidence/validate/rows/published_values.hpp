@@ -88,4 +88,13 @@ namespace base {
 inline constexpr double kMedian_mm = 15.0;
 }  // namespace base
 
+/// Plans of permanent seeds of I-125 for three glands and three strengths, 9,000 in all, with random errors of the
+/// seeds' places: the standard deviation on each axis, and the least share of the prescribed dose that D90 was in all
+/// of them
+/// ("acceptable target coverage under the D90/90 criterion"). PubMed 16515813. Abstract.
+namespace d90 {
+inline constexpr double kSigma_mm = 4.0;
+inline constexpr double kLeast = 0.9;
+}  // namespace d90
+
 }  // namespace stylet::validate::published
