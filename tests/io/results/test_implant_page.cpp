@@ -307,6 +307,8 @@ TEST(TemporaryPage, speaks_of_dwell_positions_and_catheters_and_has_three_places
   EXPECT_GE(count(text, "At planning"), 1U);
   EXPECT_EQ(count(text, "against the tissue, on the whole"), 1U);
   EXPECT_EQ(count(text, "needles out"), 0U);
+  EXPECT_EQ(count(text, "Shafts are those of needles"), 0U);
+  EXPECT_EQ(count(text, "needle first"), 0U);
   const std::string table = seeds_csv(implant);
   EXPECT_EQ(count(table, "planning_room_x_mm"), 1U);
   EXPECT_EQ(count(table, "wait_z_mm"), 1U);
@@ -315,6 +317,16 @@ TEST(TemporaryPage, speaks_of_dwell_positions_and_catheters_and_has_three_places
   EXPECT_EQ(json["implant"]["dwell_positions"].size(), implant.history.seeds.size());
   EXPECT_EQ(json["implant"]["why"].back()["cause"], "planning to delivery");
   EXPECT_FALSE(json["implant"].contains("seeds"));
+}
+
+TEST(TemporaryPage, gives_the_scripts_its_words) {
+  const auto nouns_on = [](const ImplantOutcome& implant) {
+    return nlohmann::json::parse(between(page_of(implant), "id=\"implant-data\">", "</script>"))["nouns"];
+  };
+  EXPECT_EQ(nouns_on(temporary_outcome())["sources"], "dwell positions");
+  EXPECT_EQ(nouns_on(temporary_outcome())["needle"], "catheter");
+  EXPECT_EQ(nouns_on(outcome())["sources"], "seeds");
+  EXPECT_EQ(nouns_on(outcome())["needle"], "needle");
 }
 
 TEST(CausePicture, leaves_out_causes_that_moved_no_seed_and_a_sentence_says_so) {

@@ -22,7 +22,7 @@ std::string plan_line(const DoseEvaluation& evaluation) {
   const DosePlan& plan = evaluation.plan;
   const bool permanent = plan.implant == Implant::permanent;
   std::string facts = fmt::format("{} implant, {} {}, {}", permanent ? "permanent" : "temporary", plan.sources.size(),
-                                  permanent ? "seeds" : "dwell places", evaluation.source.title);
+                                  permanent ? "seeds" : "dwell positions", evaluation.source.title);
   if (evaluation.prescription_Gy > 0.0) facts += fmt::format(", {:g} Gy prescribed", evaluation.prescription_Gy);
   const std::string name = std::filesystem::path(plan.file).filename().string();
   return name.empty() || plan.label.empty() ? facts : name + ": " + facts;

@@ -31,7 +31,7 @@ std::string source_tiles(const DosePlan& plan) {
     return figure_tile(fmt::format("{}", plan.sources.size()), "seeds") +
            figure_tile(fixed(strength, 2) + "&nbsp;U", "total air-kerma strength");
   }
-  return figure_tile(fmt::format("{}", plan.sources.size()), "dwell places") +
+  return figure_tile(fmt::format("{}", plan.sources.size()), "dwell positions") +
          figure_tile(fixed(time, 1) + "&nbsp;s", "total dwell time");
 }
 
@@ -180,7 +180,7 @@ std::string seed_table(const DoseEvaluation& evaluation) {
       "class=\"number\">No.</th><th>Needle</th><th class=\"number\">x [mm]</th><th class=\"number\">y [mm]</th><th "
       "class=\"number\">z [mm]</th><th>Axis</th><th class=\"number\">Strength [U]</th>{}</tr></thead><tbody>{}</tbody>"
       "</table></div></details>",
-      evaluation.plan.sources.size(), temporary ? "dwell places" : "seeds",
+      evaluation.plan.sources.size(), temporary ? "dwell positions" : "seeds",
       temporary ? "<th class=\"number\">Time [s]</th>" : "", rows);
 }
 

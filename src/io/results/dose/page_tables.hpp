@@ -29,7 +29,7 @@ std::string dvh_figures(const std::vector<NamedDose>& doses, const std::vector<s
 /// Doses at points and the comparison with a dose grid of a file, as far as there are any.
 std::string points_and_comparison(const DoseEvaluation& evaluation);
 
-/// All seeds or dwell places.
+/// All seeds or dwell positions.
 std::string seed_table(const DoseEvaluation& evaluation);
 
 /// Plan and source as pairs of name and value.

@@ -72,11 +72,15 @@ std::string implant_page_data(const ImplantOutcome& outcome, const DvhTable& pla
   }
   for (std::size_t k = 0; k < kThirds.size(); ++k)
     thirds.push_back({{"name", kThirds[k]}, {"color", kThirdColours[k]}});
-  PageJson json = {{"planned_percent", curves_json(planned)},
-                   {"thirds", thirds},
-                   {"seeds", seeds},
-                   {"needle_diameter_mm", outcome.scenario.needle.diameter_mm},
-                   {"needles", needles_in_place(history)}};
+  const ImplantNouns& nouns = nouns_of(history);
+  PageJson json = {
+      {"planned_percent", curves_json(planned)},
+      {"nouns",
+       {{"source", nouns.source}, {"sources", nouns.sources}, {"needle", nouns.needle}, {"needles", nouns.needles}}},
+      {"thirds", thirds},
+      {"seeds", seeds},
+      {"needle_diameter_mm", outcome.scenario.needle.diameter_mm},
+      {"needles", needles_in_place(history)}};
   if (found) {
     json["found_percent"] = curves_json(*found);
     json["found"] = found_seeds_json(outcome);

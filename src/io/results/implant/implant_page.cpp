@@ -22,6 +22,8 @@
 #include "report/html_parts.hpp"
 #include "report/text.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace stylet::results {
@@ -104,10 +106,12 @@ Result<std::string> implant_page(const ImplantOutcome& outcome) {
       {"dvh_of_found", found ? " Dotted lines are the dose of the seeds where they were found on imaging." : ""},
       {"marks_of_found", found ? " Crosses are the places where seeds were found on imaging." : ""},
       {"space_of_found", found ? " Orange marks are the places where seeds were found on imaging." : ""},
-      {"space_of_needles", needles_together(history)
-                               ? " Shafts are those of needles that are in the tissue together, bent as they are when "
-                                 "the last of them has gone in."
-                               : ""},
+      {"space_of_needles",
+       needles_together(history)
+           ? fmt::format(" Shafts are those of {} that are in the tissue together, bent as they are "
+                         "when the last of them has gone in.",
+                         nouns_of(history).needles)
+           : ""},
       {"report_of_found", found ? "; <a href=\"found/report.html\">the dose of the found seeds</a>" : ""},
       {"files_of_found", found ? " The match with the found seeds is in <code>found.csv</code>." : ""},
       {"seeds", seed_error_table(history)},

@@ -22,14 +22,15 @@ std::string technique_text(SeedTechnique technique) {
   return {};
 }
 
-std::string order_text(NeedleOrder order) {
+/// @param needle noun for the needles of the plan
+std::string order_text(NeedleOrder order, const char* needle) {
   switch (order) {
     case NeedleOrder::plan:
       return "as in the plan";
     case NeedleOrder::anterior_first:
-      return "the most anterior needle first";
+      return fmt::format("the most anterior {} first", needle);
     case NeedleOrder::posterior_first:
-      return "the most posterior needle first";
+      return fmt::format("the most posterior {} first", needle);
   }
   return {};
 }
@@ -87,7 +88,7 @@ namespace {
 std::string catheter_facts(const Scenario& scenario) {
   const Scenario::Procedure& procedure = scenario.procedure;
   return definition("Technique", "catheters go in one after the other, their hubs are locked, and all stay") +
-         definition("Order of the catheters", order_text(procedure.order)) +
+         definition("Order of the catheters", order_text(procedure.order, "catheter")) +
          definition("Stabilising needles", stabilising_text(procedure.stabilising)) +
          definition("Speed of insertion", fmt::format("{:g} mm/s", procedure.speed_mm_per_s)) +
          definition("From the last catheter to the images of the plan", fmt::format("{:g} s", procedure.pause_s)) +
@@ -102,7 +103,7 @@ std::string procedure_facts(const Scenario& scenario, Implant implant) {
   if (implant == Implant::temporary) return catheter_facts(scenario);
   const Scenario::Procedure& procedure = scenario.procedure;
   return definition("Technique", technique_text(procedure.technique)) +
-         definition("Order of the needles", order_text(procedure.order)) +
+         definition("Order of the needles", order_text(procedure.order, "needle")) +
          definition("Needles together", together_text(procedure.together)) +
          definition("Stabilising needles", stabilising_text(procedure.stabilising)) +
          definition("Speed of insertion", fmt::format("{:g} mm/s", procedure.speed_mm_per_s)) +

@@ -34,6 +34,6 @@ export function buildLevelKey(data: DoseData, box: HTMLElement, marks: [string, 
     box.append(part);
   }
   item('<svg width="30" height="12" viewBox="0 0 7.5 3" aria-hidden="true"><path d="M1.5 1.5H6" stroke="#23262b" stroke-width="1.3" stroke-linecap="round"/></svg>',
-    data.sources.temporary ? 'dwell place' : 'seed');
+    data.sources.temporary ? 'dwell position' : 'seed');
   for (const [mark, name] of marks) item(mark, name);
 }

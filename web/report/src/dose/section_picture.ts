@@ -158,7 +158,7 @@ export function buildSection(data: DoseData, plane: Plane, more: MoreMarks = () 
     const names = inside.querySelector('.isodose-names');
     if (names) inside.append(names);
     drawScale(svg, plane, frame);
-    const kind = data.sources.temporary ? 'dwell place' : 'seed';
+    const kind = data.sources.temporary ? 'dwell position' : 'seed';
     const where = `${plane.moves} = ${label(Math.round(10 * height) / 10)} mm`;
     caption.replaceChildren(element('b', '', plane.name), element('span', '', `${where} · ${shown} ${kind}${shown === 1 ? '' : 's'} near`));
     svg.setAttribute('aria-label', `${plane.name} section at ${where}`);

@@ -64,7 +64,7 @@ export function buildDoseViewer(data: DoseData, root: HTMLElement, more?: (stage
   const views = element('div', 'views');
   for (const view of VIEWS) views.append(button(view.name === 'Oblique' ? 'Reset view' : view.name, () => stage.look(view.from)));
   side.append(element('h3', '', 'Shown'), ...stage.structures.map((s) => structureRow(s, draw)),
-    switchOf(data.sources.temporary ? 'Dwell places' : 'Seeds', true, '#3b4452', (on) => {
+    switchOf(data.sources.temporary ? 'Dwell positions' : 'Seeds', true, '#3b4452', (on) => {
       stage.sources.visible = on;
       draw();
     }),

@@ -4,7 +4,7 @@
 import { element } from '../../../shared/dom';
 import type { DoseStage } from '../dose/stage';
 import { switchOf } from '../dose/viewer';
-import type { ImplantData } from './data';
+import { capital, type ImplantData } from './data';
 import { ErrorArrows } from './error_arrows';
 import { FOUND_COLOR, foundMarks } from './found_marks';
 import { NEEDLE_COLOR, needleShafts, STABILISING_COLOR } from './needle_shafts';
@@ -31,14 +31,14 @@ function addFound({ found }: ImplantData, stage: DoseStage): HTMLElement[] {
 }
 
 /** Switches for the needles that are in the tissue together, where there are any. */
-function addNeedles({ needles, needle_diameter_mm: diameter }: ImplantData, stage: DoseStage): HTMLElement[] {
+function addNeedles({ nouns, needles, needle_diameter_mm: diameter }: ImplantData, stage: DoseStage): HTMLElement[] {
   const kinds = [
     { text: 'Stabilising needles', color: STABILISING_COLOR, of: needles.filter((needle) => needle.stabilises) },
-    { text: 'Needles of the plan', color: NEEDLE_COLOR, of: needles.filter((needle) => !needle.stabilises) },
+    { text: `${capital(nouns.needles)} of the plan`, color: NEEDLE_COLOR, of: needles.filter((needle) => !needle.stabilises) },
   ].filter(({ of }) => of.length > 0);
   if (kinds.length === 0) return [];
   return [
-    element('h3', '', 'Needles in place together'),
+    element('h3', '', `${capital(nouns.needles)} in place together`),
     ...kinds.map(({ text, color, of }) => {
       const shafts = needleShafts(of, diameter, color);
       stage.add(shafts);
@@ -68,7 +68,7 @@ export function addArrows(data: ImplantData, stage: DoseStage, picture: HTMLElem
     key.append(part);
   }
   return [
-    element('h3', '', 'Errors of the seeds'),
+    element('h3', '', `Errors of the ${data.nouns.sources}`),
     switchOf('Arrows from planned to rest', true, null, (on) => {
       arrows.object.visible = on;
       update();

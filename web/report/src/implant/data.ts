@@ -22,7 +22,21 @@ export interface NeedleInPlace {
   shaft_mm: Triple[];  // LPS, from outside the skin to the tip, with all needles of its group in place
 }
 
+/** Words for the parts of an implant: seed and needle, or dwell position and catheter. */
+export interface Nouns {
+  source: string;
+  sources: string;
+  needle: string;
+  needles: string;
+}
+
+/** A noun at the start of a heading. */
+export function capital(noun: string): string {
+  return noun.charAt(0).toUpperCase() + noun.slice(1);
+}
+
 export interface ImplantData {
+  nouns: Nouns;
   planned_percent: number[][];  // (structures × doses) histograms of the plan, at the doses of the delivered ones
   found_percent?: number[][];   // those of the seeds that were found on images, where there are any
   found?: FoundSeed[];

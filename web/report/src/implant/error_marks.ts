@@ -3,7 +3,7 @@
 // were found on images are crosses.
 import { inPicture } from '../dose/planes';
 import { add, NEAR_MM, type MoreMarks } from '../dose/section_picture';
-import type { ImplantData } from './data';
+import { capital, type ImplantData } from './data';
 
 const RADIUS = 1.05;  // [mm] of an open mark, so that a seed seen from its end lies inside
 
@@ -16,7 +16,7 @@ export const FOUND_KEY = '<svg width="14" height="14" viewBox="0 0 3.5 3.5" aria
 const ARM = 0.95;  // [mm] half the width of a cross
 
 /** Draws the errors of the seeds that are planned, or rest, near the plane, and the found ones near it. */
-export function errorMarks({ seeds, found = [] }: ImplantData): MoreMarks {
+export function errorMarks({ nouns, seeds, found = [] }: ImplantData): MoreMarks {
   return (inside, plane, height) => {
     const g = add(inside, 'g', { class: 'errors' });
     const isNear = (x: ArrayLike<number>) => Math.abs(x[plane.normal] - height) <= NEAR_MM;
@@ -24,7 +24,7 @@ export function errorMarks({ seeds, found = [] }: ImplantData): MoreMarks {
       if (!isNear(planned) && !(rest && isNear(rest))) continue;
       const [x, y] = inPicture(plane, planned);
       const mark = add(g, 'g', {});
-      add(mark, 'title', {}, `Seed ${number}, needle ${needle}`);
+      add(mark, 'title', {}, `${capital(nouns.source)} ${number}, ${nouns.needle} ${needle}`);
       if (rest) {
         const [u, v] = inPicture(plane, rest);
         // The line begins at the rim of the open mark.

@@ -20,7 +20,7 @@ buildDosePage(decode(text('dose-data')), {
   found: implant.found_percent,
   keys: [
     [PLANNED_KEY, 'planned place'],
-    [ERROR_KEY, 'error of a seed'],
+    [ERROR_KEY, `error of a ${implant.nouns.source}`],
     ...(implant.found ? [[FOUND_KEY, 'found on imaging'] as [string, string]] : []),
   ],
   marks: errorMarks(implant),
