@@ -52,6 +52,76 @@ std::string events_text(const std::vector<Event>& events) {
   return table.text();
 }
 
+/// [mm] Mean distance of seeds from their planned places.
+double mean_error_mm(const std::vector<SeedHistory>& seeds) {
+  double sum = 0.0;
+  for (const SeedHistory& seed : seeds) sum += seed.error_mm().norm();
+  return seeds.empty() ? 0.0 : sum / static_cast<double>(seeds.size());
+}
+
+std::size_t count_of(const RecordedImplant& implant, SeedAct::Kind kind) {
+  return static_cast<std::size_t>(
+      std::count_if(implant.acts.begin(), implant.acts.end(), [&](const SeedAct& act) { return act.kind == kind; }));
+}
+
+Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json implant_json(const RecordedImplant& implant) {
+  const RecordedPlan& plan = implant.plan;
+  Json acts = Json::array();
+  for (const SeedAct& act : implant.acts) {
+    acts.push_back({{"kind", to_string(act.kind)},
+                    {"time_s", act.time_s},
+                    {"number", act.seed.number + 1},
+                    {"needle", plan.needles[act.seed.needle].name},
+                    {"planned_mm", act.seed.planned_mm},
+                    {"dropped_mm", act.seed.dropped_mm},
+                    {"rest_mm", act.seed.rest_mm},
+                    {"error_mm", act.seed.error_mm().norm()}});
+  }
+  const auto score = implant.dose_after(static_cast<std::int64_t>(implant.acts.size()));
+  return {
+      {"needle", plan.current < 0 ? Json(nullptr) : Json(plan.needles[static_cast<std::size_t>(plan.current)].name)},
+      {"planned_seeds", plan.seeds.size()},
+      {"acts", acts},
+      {"seeds_at_end", implant.seeds_after(implant.acts.size()).size()},
+      {"d90_Gy", score ? finite(score->d90_Gy) : Json(nullptr)},
+      {"d90_percent", score ? finite(score->d90_percent) : Json(nullptr)},
+      {"v100_percent", score ? finite(score->v100_percent) : Json(nullptr)}};
+}
+
+void add_implant(Facts& facts, const RecordedImplant& implant) {
+  const RecordedPlan& plan = implant.plan;
+  facts.add(
+      "plan of seeds",
+      fmt::format("{} seeds in {} needles; {}", plan.seeds.size(), plan.needles.size(),
+                  plan.current < 0 ? "this needle is beside the plan"
+                                   : "this is needle " + plan.needles[static_cast<std::size_t>(plan.current)].name));
+  facts.add("seeds",
+            fmt::format("{} of earlier needles, {} dropped, {} taken back", count_of(implant, SeedAct::Kind::earlier),
+                        count_of(implant, SeedAct::Kind::dropped), count_of(implant, SeedAct::Kind::taken_back)));
+  const std::vector<SeedHistory> seeds = implant.seeds_after(implant.acts.size());
+  std::string end = fmt::format("{} seeds in the tissue", seeds.size());
+  if (!seeds.empty()) end += fmt::format(", on average {:.1f} mm from their plan", mean_error_mm(seeds));
+  if (const auto score = implant.dose_after(static_cast<std::int64_t>(implant.acts.size()))) {
+    end += fmt::format("; D90 {:.1f} Gy", score->d90_Gy);
+    if (std::isfinite(score->d90_percent)) end += fmt::format(" ({:.1f} %)", score->d90_percent);
+  }
+  facts.add("at the end", end);
+}
+
+std::string acts_text(const RecordedImplant& implant) {
+  Table table({"seed", "needle", "what", "time s", "planned x y z mm", "dropped x y z mm", "off mm"});
+  const auto place = [](const Vec3& x) { return fmt::format("{:.1f} {:.1f} {:.1f}", x.x(), x.y(), x.z()); };
+  for (const SeedAct& act : implant.acts) {
+    table.row({fmt::format("{}", act.seed.number + 1), implant.plan.needles[act.seed.needle].name,
+               act.kind == SeedAct::Kind::taken_back ? "taken back" : to_string(act.kind),
+               fmt::format("{:.2f}", act.time_s), place(act.seed.planned_mm), place(act.seed.dropped_mm),
+               fmt::format("{:.1f}", act.seed.error_mm().norm())});
+  }
+  return table.text();
+}
+
 }  // namespace
 
 Description describe(const RunRecording& run) {
@@ -79,6 +149,8 @@ Description describe(const RunRecording& run) {
       {"events", finished ? events_json(run.summary->events) : Json::array()},
       {"warnings", warnings}};
 
+  if (run.implant) out.json["implant"] = implant_json(*run.implant);
+
   Facts facts;
   facts.add("kind", "recording of an insertion");
   facts.add("made by", "stylet " + run.info.version);
@@ -93,7 +165,9 @@ Description describe(const RunRecording& run) {
   facts.add("largest base depth", fmt::format("{:.1f} mm", peaks.depth_mm));
   facts.add("peak force", fmt::format("axial {:.2f} N, sagittal {:.2f} N, lateral {:.2f} N", peaks.axial_N,
                                       peaks.sagittal_N, peaks.lateral_N));
+  if (run.implant) add_implant(facts, *run.implant);
   out.text = facts.text();
+  if (run.implant && !run.implant->acts.empty()) out.text += "\n\n" + acts_text(*run.implant);
   if (finished) out.text += "\n\n" + events_text(run.summary->events);
   for (const std::string& warning : warnings) out.text += "\n  warning: " + warning;
   return out;

@@ -170,6 +170,8 @@ std::vector<Vec3> ImplantDesk::rest_mm() const {
   return places;
 }
 
+void ImplantDesk::show_again() { plan_changed_ = state_changed_ = grid_changed_ = true; }
+
 ImplantDesk::Changes ImplantDesk::take_changes() {
   if (const auto ready = models_->news()) {
     for (std::size_t k = 0; k < ready->size(); ++k) plan_.needles[k].is_ready = (*ready)[k];
@@ -181,8 +183,14 @@ ImplantDesk::Changes ImplantDesk::take_changes() {
   if (news.now) {
     state_.is_computing = news.version != dose_version_ || news.now->goals.empty();
     state_.now = std::move(news.now);
+    score_version_ = news.version;
   }
-  return {std::exchange(plan_changed_, false), std::exchange(state_changed_, false), std::move(news.grid)};
+  if (news.grid) {
+    grid_ = std::move(news.grid);
+    grid_changed_ = true;
+  }
+  return {std::exchange(plan_changed_, false), std::exchange(state_changed_, false),
+          std::exchange(grid_changed_, false) ? grid_ : nullptr};
 }
 
 }  // namespace stylet::serve

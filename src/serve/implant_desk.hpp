@@ -50,6 +50,11 @@ class ImplantDesk {
   /// Indices in LiveImplant::seeds of the seeds that the present needle has dropped.
   [[nodiscard]] std::vector<std::size_t> seeds_of_current() const;
 
+  /// Whether LiveImplant::now is the dose of all seeds that have been dropped, and of no others.
+  [[nodiscard]] bool is_score_current() const { return state_.now && score_version_ == dose_version_; }
+  /// Makes the next take_changes() return everything, because the viewers have seen another implant.
+  void show_again();
+
   /// What has changed since the last call.
   struct Changes {
     bool plan = false;
@@ -71,7 +76,10 @@ class ImplantDesk {
   bool state_changed_ = true;
   std::unique_ptr<NeedleModels> models_;
   std::unique_ptr<ImplantDose> dose_;
-  std::uint64_t dose_version_ = 0;  ///< of the seeds that `dose_` was given last
+  std::uint64_t dose_version_ = 0;   ///< of the seeds that `dose_` was given last
+  std::uint64_t score_version_ = 0;  ///< of the seeds that LiveImplant::now is of
+  std::shared_ptr<const LiveDose> grid_;
+  bool grid_changed_ = false;
 };
 
 }  // namespace stylet::serve

@@ -58,7 +58,8 @@ void LiveRun::set_field(std::shared_ptr<const DisplayField> field) {
 
 Result<std::unique_ptr<LiveRun>> LiveRun::start(const OpenModel& open, std::size_t insertion,
                                                 const std::filesystem::path& folder, const RunnerSettings& settings,
-                                                double recorded_frames_per_s, std::unique_ptr<Device> other) {
+                                                double recorded_frames_per_s, std::unique_ptr<Device> other,
+                                                const RecordedPlan* plan_of_seeds) {
   std::unique_ptr<LiveRun> run(new LiveRun(open, insertion, recorded_frames_per_s));
   const PlannedInsertion& plan = run->plan_;
   std::shared_ptr<Device> device;
@@ -83,7 +84,7 @@ Result<std::unique_ptr<LiveRun>> LiveRun::start(const OpenModel& open, std::size
   make_private_folder(folder.parent_path());
   make_private_folder(folder);
   run->in_use_ = FolderLock(folder, FolderLock::Kind::shared);  // first, so that nobody removes the new recording
-  auto recorder = RunRecorder::open(folder / "run.h5", info, open.model->mesh());
+  auto recorder = RunRecorder::open(folder / "run.h5", info, open.model->mesh(), plan_of_seeds);
   if (recorder) {
     make_private(folder / "run.h5");
     run->recorder_ = std::move(*recorder);
@@ -109,6 +110,16 @@ void LiveRun::stop_recording(const std::string& why) {
 
 void LiveRun::record_step(const std::optional<Step>& step) {
   if (recorder_ && step) record(recorder_->add_step(*step));
+}
+
+void LiveRun::record_implant(const LiveImplant& implant, bool score_is_current) {
+  const SeedJournal::News news = journal_.news(implant, score_is_current, time_s_);
+  for (const SeedAct& act : news.acts) {
+    if (recorder_) record(recorder_->add_act(act));
+  }
+  for (const RecordedScore& dose : news.doses) {
+    if (recorder_) record(recorder_->add_dose(dose));
+  }
 }
 
 void LiveRun::pump(const std::function<void(const LiveEvent&)>& tell) {

@@ -7,6 +7,7 @@
 #include "rests.hpp"
 #include "scene_points.hpp"
 #include "seed_follower.hpp"
+#include "seed_journal.hpp"
 #include "stylet/io/run_recorder.hpp"
 #include "stylet/realtime/runner.hpp"
 #include "stylet/serve/companion.hpp"
@@ -47,9 +48,11 @@ class LiveRun {
   /// @param folder folder of this recording; it is created. If it cannot be written, the insertion runs without a
   /// recording and recording_problem() gives the reason.
   /// @param other device that moves the needle; null: a hand at a page moves it
+  /// @param plan the plan of seeds that the needle belongs to, for the recording; null: there is none
   static Result<std::unique_ptr<LiveRun>> start(const OpenModel& open, std::size_t insertion,
                                                 const std::filesystem::path& folder, const RunnerSettings& settings,
-                                                double recorded_frames_per_s, std::unique_ptr<Device> other);
+                                                double recorded_frames_per_s, std::unique_ptr<Device> other,
+                                                const RecordedPlan* plan = nullptr);
 
   ~LiveRun();  ///< completes the recording
   LiveRun(const LiveRun&) = delete;
@@ -70,6 +73,8 @@ class LiveRun {
   [[nodiscard]] RealtimeRunner& runner() { return *runner_; }
   /// Drops and follows the seeds of an implant.
   [[nodiscard]] SeedFollower& seeds() { return seeds_; }
+  /// Records what has changed of the implant since the last call (SeedJournal::news()).
+  void record_implant(const LiveImplant& implant, bool score_is_current);
 
   /// The hand at a page; null if another device moves the needle.
   [[nodiscard]] const std::shared_ptr<PageDevice>& hand() const { return hand_; }
@@ -100,6 +105,7 @@ class LiveRun {
   FolderLock in_use_;  ///< locks the folder of the recording
   std::unique_ptr<RunRecorder> recorder_;
   Rests rests_;
+  SeedJournal journal_;
   std::string problem_;                     ///< why nothing is recorded
   std::optional<DisplayField::Load> load_;  ///< set if there is a field
   DisplayNearField near_;                   ///< near field at the points of the scene

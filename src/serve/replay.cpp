@@ -20,8 +20,12 @@ Replay::Replay(RunRecording recording, ScenePoints points)
     : recording_(std::move(recording)), steps_(recording_.steps), points_(std::move(points)) {}
 
 double Replay::duration_s() const {
-  const double steps = recording_.steps.empty() ? 0.0 : recording_.steps.back().time_s;
-  return recording_.frames.empty() ? steps : std::max(steps, recording_.frames.back().time_s);
+  double end = recording_.steps.empty() ? 0.0 : recording_.steps.back().time_s;
+  if (!recording_.frames.empty()) end = std::max(end, recording_.frames.back().time_s);
+  // While the needle of a recording that goes on is at rest, it gets no steps.
+  if (recording_.implant && !recording_.implant->acts.empty())
+    end = std::max(end, recording_.implant->acts.back().time_s);
+  return end;
 }
 
 void Replay::seek(double time_s) {
@@ -63,16 +67,31 @@ void Replay::put_needle(LiveFrame& out) const {
   out.left_out_N = Vec3(s.force_axial_N, s.force_sagittal_N, s.force_lateral_N).norm();
 }
 
-/// Needle, contacts and displacement at the current moment.
-void Replay::put_frame(LiveFrame& out) const {
+/// Empty before the first frame.
+std::optional<Replay::Between> Replay::between() const {
   const auto& frames = recording_.frames;
-  if (frames.empty() || time_s_ < frames.front().time_s) return put_needle(out);
+  if (frames.empty() || time_s_ < frames.front().time_s) return std::nullopt;
   const auto after =
       std::upper_bound(frames.begin(), frames.end(), time_s_, [](double t, const Frame& f) { return t < f.time_s; });
   const Frame& a = after == frames.begin() ? frames.front() : *(after - 1);
   const Frame& b = after == frames.end() ? frames.back() : *after;
   const double span = b.time_s - a.time_s;
-  const double share = span > 0.0 ? std::clamp((time_s_ - a.time_s) / span, 0.0, 1.0) : 0.0;
+  return Between{a, b, span > 0.0 ? std::clamp((time_s_ - a.time_s) / span, 0.0, 1.0) : 0.0};
+}
+
+Vec3 Replay::displacement(Index node) const {
+  const std::optional<Between> now = between();
+  if (!now) return Vec3::Zero();
+  const Eigen::Index at = 3 * Eigen::Index{node};
+  return (1.0 - now->share) * now->before.displacement.segment<3>(at) +
+         now->share * now->after.displacement.segment<3>(at);
+}
+
+/// Needle, contacts and displacement at the current moment.
+void Replay::put_frame(LiveFrame& out) const {
+  const std::optional<Between> now = between();
+  if (!now) return put_needle(out);
+  const auto& [a, b, share] = *now;
   for (std::size_t k = 0; k < a.needle.size(); ++k) {
     const Vec3& from = a.needle[k];
     const Vec3 point = k < b.needle.size() ? Vec3(from + share * (b.needle[k] - from)) : from;

@@ -7,6 +7,7 @@
 #include "stylet/sim/recorded_steps.hpp"
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace stylet::serve {
@@ -34,11 +35,21 @@ class Replay {
   /// at a depth that the base has not been drawn back from.
   [[nodiscard]] std::vector<std::string> inside() const;
 
+  /// Displacement [mm] LPS of a node of the mesh at the current moment; zero before the first frame.
+  [[nodiscard]] Vec3 displacement(Index node) const;
+
   /// The picture of the current moment; null if it has not changed since the last call.
   std::shared_ptr<const LiveFrame> picture(bool whole_curve);
 
  private:
   [[nodiscard]] const Step* step() const;
+  /// The recorded frames before and after the current moment.
+  struct Between {
+    const Frame& before;
+    const Frame& after;
+    double share;  ///< of `after`, 0…1
+  };
+  [[nodiscard]] std::optional<Between> between() const;
   void put_frame(LiveFrame& out) const;
   void put_needle(LiveFrame& out) const;
 

@@ -7,6 +7,7 @@
 #include "live_run.hpp"
 #include "map_maker.hpp"
 #include "replay.hpp"
+#include "replayed_seeds.hpp"
 #include "room_watch.hpp"
 #include "scene.hpp"
 #include "shelf.hpp"
@@ -111,7 +112,8 @@ struct Session::Parts {
   std::optional<SetAside> aside;
   std::vector<LiveEvent> happened;  ///< events of the live run
   std::unique_ptr<Replay> replay;
-  FolderLock replayed;  ///< keeps the replayed recording from being removed
+  std::unique_ptr<ReplayedSeeds> replayed_seeds;  ///< of `replay`, if it has an implant
+  FolderLock replayed;                            ///< keeps the replayed recording from being removed
   SessionStatus status;
   bool whole_curve = true;
   Clock::time_point next_status;
@@ -147,9 +149,12 @@ struct Session::Parts {
   void keep_needle();
   /// Whether a seed is being dropped or its dose computed; then the session looks for the result more often.
   [[nodiscard]] bool is_implant_busy() const {
-    return implant && (implant->state().is_computing || (live && live->seeds().is_dropping()));
+    return implant && !replay && (implant->state().is_computing || (live && live->seeds().is_dropping()));
   }
   void follow_implant();
+  void take_drop();
+  void show_replayed_seeds();
+  void end_replay();
   void choose_needle(const Request& request, std::size_t which);
   void use_model(const Request& request, const NeedleModels::Ready& ready);
   void drop_seed(const Request& request);
@@ -258,9 +263,18 @@ void Session::Parts::set_live_aside() {
   status.device_problem.clear();
 }
 
-void Session::Parts::back_to_live() {
+/// Ends the replay, if there is one, and shows the implant of the open case again instead of the recorded one.
+void Session::Parts::end_replay() {
+  if (!replay) return;
+  replayed_seeds.reset();
   replay.reset();
   replayed = {};
+  audience.show(LivePlan{});
+  if (implant) implant->show_again();
+}
+
+void Session::Parts::back_to_live() {
+  end_replay();
   show_model(insertion);
   SetAside was = std::move(*aside);
   aside.reset();
@@ -300,8 +314,7 @@ void Session::Parts::say_status() {
 /// Starts the loop for one of the model's insertions, with the needle in front of the skin.
 void Session::Parts::place(const Request& request, std::size_t which) {
   end_live();
-  replay.reset();
-  replayed = {};
+  end_replay();
   status.replay = {};
   insertion = which;
   if (open.way != which) show_model(which);
@@ -311,8 +324,11 @@ void Session::Parts::place(const Request& request, std::size_t which) {
   const std::string name = shelf.new_name(plan_name);
   std::unique_ptr<Device> other = settings.companion ? settings.companion->device() : nullptr;
   status.device = other ? settings.companion->name() : "page";
+  if (implant) implant->set_current(needle);
+  const std::optional<RecordedPlan> plan_of_seeds =
+      implant ? std::optional(recorded_plan(implant->plan())) : std::optional<RecordedPlan>();
   auto run = LiveRun::start(open, which, shelf.folder(name), settings.runner, settings.recorded_frames_per_s,
-                            std::move(other));
+                            std::move(other), plan_of_seeds ? &*plan_of_seeds : nullptr);
   if (!run) {
     refuse(request, run.error());
     return fail(run.error());
@@ -332,8 +348,8 @@ void Session::Parts::place(const Request& request, std::size_t which) {
   happened = {{.kind = "started", .time_s = 0.0, .depth_mm = 0.0, .force_N = 0.0, .region = plan_name}};
   audience.tell(happened.front());
   if (!implant) return;
-  implant->set_current(needle);
   keep_needle();
+  live->record_implant(implant->state(), implant->is_score_current());
   live->seeds().set(implant->rest_mm(), implant->seeds_of_current());
 }
 
@@ -432,30 +448,41 @@ void Session::Parts::keep_needle() {
   if (!field_maker) implant->models().begin_after(*needle);
 }
 
-/// Takes up finished drops, and tells the viewers what has changed of the implant.
+/// Takes up a finished drop.
+void Session::Parts::take_drop() {
+  const auto drop = live->seeds().take_drop();
+  if (!drop) return;
+  if (const Result<> added = implant->add(*drop); !added) {
+    audience.refuse(dropper, {added.error().where + ": " + added.error().what, added.error().cure});
+    return;
+  }
+  live->seeds().set(implant->rest_mm(), implant->seeds_of_current());
+  if (drop->found) return;
+  audience.refuse(dropper, {"The motion of the tissue is not known where this seed was dropped; it is counted as "
+                            "resting there.",
+                            "Take it back, and drop it nearer to the planned path of the needle."});
+}
+
+/// Takes up finished drops, records what has changed of the implant, and tells it to the viewers. During a replay they
+/// see the recorded implant instead.
 void Session::Parts::follow_implant() {
   std::erase_if(former_implants, [](const auto& former) { return former->models().done(); });
-  if (!implant) return;
-  if (live) {
-    if (const auto drop = live->seeds().take_drop()) {
-      if (const Result<> added = implant->add(*drop); !added) {
-        audience.refuse(dropper, {added.error().where + ": " + added.error().what, added.error().cure});
-      } else {
-        live->seeds().set(implant->rest_mm(), implant->seeds_of_current());
-        if (!drop->found) {
-          audience.refuse(dropper, {"The motion of the tissue is not known where this seed was dropped; it is counted "
-                                    "as resting there.",
-                                    "Take it back, and drop it nearer to the planned path of the needle."});
-        }
-      }
-    }
-  }
+  if (!implant || replay) return;
+  if (live) take_drop();
   ImplantDesk::Changes changes = implant->take_changes();
+  if (live && changes.state) live->record_implant(implant->state(), implant->is_score_current());
   if (changes.plan) audience.show(implant->plan());
   if (changes.state) audience.show(implant->state());
   if (changes.dose) audience.show(std::move(changes.dose));
   if (!live) return;
   if (auto places = live->seeds().news()) audience.show(LiveSeeds{std::move(*places)});
+}
+
+/// Shows the seeds that were in the tissue at the present moment of the replay, where they were then.
+void Session::Parts::show_replayed_seeds() {
+  if (!replayed_seeds) return;
+  if (const auto news = replayed_seeds->news()) audience.show(*news);
+  audience.show(replayed_seeds->places());
 }
 
 void Session::Parts::drop_seed(const Request& request) {
@@ -590,8 +617,14 @@ Result<> Session::Parts::start_replay(const std::string& name) {
   audience.show(made.scene);
   for (const Event& e : recording->events)
     audience.tell(LiveEvent{to_string(e.kind), e.time_s, e.depth_mm, e.force_N, e.region});
+  replayed_seeds.reset();
   replayed = std::move(in_use);
   replay = std::make_unique<Replay>(std::move(*recording), std::move(made.points));
+  audience.show(LivePlan{});
+  if (replay->recording().implant) {
+    replayed_seeds = std::make_unique<ReplayedSeeds>(*replay);
+    audience.show(replayed_seeds->plan());
+  }
   status.state = SessionStatus::State::ready;
   status.replay = {.name = name, .time_s = 0.0, .duration_s = replay->duration_s(), .rate = 0.0};
   status.insertion = name;
@@ -635,7 +668,7 @@ void Session::Parts::carry_out(const Request& request) {
       }
       if (settings.cases.empty()) return missing("case", 0);
       if (!open.model) return open_model(request, open_case, settings.cases[open_case].load);
-      replay.reset();
+      end_replay();
       show_model(insertion);
       place(request, insertion);
       break;
@@ -669,6 +702,10 @@ void Session::Parts::carry_out(const Request& request) {
     case Kind::undo:
     case Kind::clear:
       if (!implant) break;
+      if (replay) {
+        return refuse(request, input_error("the seeds", "a recording is being shown, whose seeds cannot be changed",
+                                           "Return to the live needle"));
+      }
       if (request.kind == Kind::clear) implant->clear();
       if (request.kind == Kind::undo) {
         if (const auto taken = implant->take_back(); !taken) return refuse(request, taken.error());
@@ -738,6 +775,7 @@ void Session::Parts::tick(double dt_s) {
     const bool playing = replay->rate() > 0.0;
     replay->advance(dt_s);
     frame = replay->picture(whole_curve);
+    if (frame) show_replayed_seeds();
     if (playing && replay->rate() == 0.0) next_status = {};  // the replay has reached its end: send the status at once
   }
   if (frame) {

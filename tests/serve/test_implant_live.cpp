@@ -143,3 +143,60 @@ TEST(LiveImplant, a_case_without_a_plan_has_none) {
   ASSERT_TRUE(page.until([&] { return !page.notices.empty(); }));
   EXPECT_NE(page.notices.back()["text"].get<std::string>().find("no plan"), std::string::npos);
 }
+
+TEST(LiveImplant, a_replay_has_the_seeds_of_each_moment_and_leaves_the_live_ones_as_they_are) {
+  Implanting at;
+  LiveClient& page = *at.page;
+  ASSERT_TRUE(page.until([&] { return page.displaced_nodes > 0; })) << "from now on the recording has frames";
+  ASSERT_TRUE(at.go_to(at.drop_depth(0, 0)));
+  ASSERT_TRUE(at.drop());
+  ASSERT_TRUE(page.until([&] { return at.is_computed(); }));
+  const auto first = page.implant["seeds"][0];
+  const double d90 = page.implant["now"]["d90_Gy"];
+  ASSERT_TRUE(page.until([&] { return page.plan["needles"][1]["ready"].get<bool>(); }));
+  page.command(R"({"do":"needle","index":1})");
+  ASSERT_TRUE(page.until([&] { return page.plan["current"] == 1 && page.depth_mm < 0.0F; }));
+  const std::string name = page.status["recording"]["name"];
+  ASSERT_TRUE(at.go_to(at.drop_depth(1, 0)));
+  const double before_drop_s = page.time_s;
+  ASSERT_TRUE(at.drop());
+  ASSERT_TRUE(page.until([&] { return at.is_computed(); }));
+  page.command(R"({"do":"undo"})");
+  ASSERT_TRUE(page.until([&] { return at.dropped() == 1 && at.is_computed(); }));
+  ASSERT_TRUE(at.drop());
+  ASSERT_TRUE(page.until([&] { return at.is_computed(); }));
+  const auto live_seeds = page.implant["seeds"];
+  const auto live_now = page.implant["now"]["d90_Gy"];
+
+  // Recordings are written to the disk five times a second.
+  ASSERT_TRUE(page.until([&, until = page.time_s + 1.0] { return page.time_s > until; }));
+  page.command(R"({"do":"replay","name":")" + name + R"("})");
+  ASSERT_TRUE(
+      page.until([&] { return page.status.value("mode", "") == "replay" && page.implant["seeds"].size() == 1; }));
+  EXPECT_EQ(page.plan["current"], 1);
+  EXPECT_EQ(page.plan["needles"].size(), 2u);
+  EXPECT_EQ(page.implant["seeds"][0]["rest_mm"], first["rest_mm"]) << "the seed of the earlier needle";
+  EXPECT_NEAR(page.implant["now"]["d90_Gy"].get<double>(), d90, 1e-9);
+  const auto seek = [&](double time_s, std::size_t seeds) {
+    page.command(R"({"do":"seek","time_s":)" + std::to_string(time_s) + "}");
+    return page.until([&] {
+      return std::abs(page.time_s - time_s) < 1e-3 && at.dropped() == seeds && page.seeds["now_mm"].size() == seeds;
+    });
+  };
+  EXPECT_TRUE(seek(before_drop_s, 1)) << page.implant;
+  // The earlier seed has moved with the tissue that the second needle pushes.
+  EXPECT_GT(std::abs(page.seeds["now_mm"][0][2].get<double>() - first["rest_mm"][2].get<double>()), 0.05);
+  EXPECT_TRUE(seek(page.status["replay"]["duration_s"], 2)) << page.implant;
+  EXPECT_EQ(page.implant["seeds"], live_seeds);
+  EXPECT_EQ(page.implant["now"]["d90_Gy"], live_now);
+  page.command(R"({"do":"undo"})");
+  ASSERT_TRUE(page.until([&] { return !page.notices.empty(); }));
+  EXPECT_NE(page.notices.back()["text"].get<std::string>().find("recording"), std::string::npos);
+
+  page.command(R"({"do":"live"})");
+  ASSERT_TRUE(page.until([&] {
+    return page.status.value("mode", "") == "live" && page.plan["needles"].size() == 2 && at.dropped() == 2 &&
+           page.implant["now"].contains("goals") && !page.implant["now"]["goals"].empty();
+  }));
+  EXPECT_EQ(page.implant["seeds"], live_seeds);
+}

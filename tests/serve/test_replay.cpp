@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "replay.hpp"
+#include "replayed_seeds.hpp"
+#include "seed_journal.hpp"
 
 #include "stylet/coupling/insertion.hpp"
 
@@ -159,4 +161,100 @@ TEST(Replay, shows_a_straight_needle_where_no_frame_was_recorded_yet) {
     for (std::size_t k = 0; k < 6; ++k) EXPECT_EQ(moved(*frame, k), 0.0);
     EXPECT_EQ(frame->left_out_N, 2.0) << "the force whose displacement was not recorded";
   }
+}
+
+TEST(ReplayedSeeds, are_those_of_the_moment_and_move_as_the_nodes_around_them) {
+  RunRecording run = recording();
+  run.mesh.tets = {{0, 1, 2, 3}};
+  run.mesh.tet_region = {0};
+  run.mesh.regions = {"body"};
+  run.frames[1].displacement = VecX::Zero(12);
+  run.frames[1].displacement[2] = 2.0;  // the first node goes 2 mm to superior until 1 s
+  SeedHistory first, second;
+  first.rest_mm = Vec3(0.25, 0.25, 0.25);
+  second.number = 1;
+  second.rest_mm = Vec3(5, 5, 5);  // outside of the mesh
+  RecordedImplant& implant = run.implant.emplace();
+  implant.plan.needles.resize(1);
+  implant.plan.seeds.resize(2);
+  implant.plan.current = 0;
+  implant.acts = {{SeedAct::Kind::earlier, 0.0, first},
+                  {SeedAct::Kind::dropped, 0.4, second},
+                  {SeedAct::Kind::taken_back, 0.8, second}};
+  implant.doses = {{RecordedScore::kOfPlan, 2, 150.0, 103.0, 95.0}, {2, 2, 30.0, 20.0, 5.0}};
+  Replay replay(std::move(run), {{3, 1}, {}});
+  ReplayedSeeds seeds(replay);
+  EXPECT_EQ(seeds.plan().needles[0].seeds.size(), 2u);
+  auto now = seeds.news();
+  ASSERT_TRUE(now);
+  EXPECT_EQ(now->seeds.size(), 1u);
+  EXPECT_EQ(now->planned_seeds, 2u);
+  EXPECT_FALSE(now->now) << "its dose was not computed";
+  EXPECT_EQ(now->planned->d90_Gy, 150.0);
+  replay.seek(0.3);
+  EXPECT_FALSE(seeds.news()) << "the same seeds";
+  EXPECT_NEAR(seeds.places().now_mm[0].z(), 0.25 + 0.25 * 0.3 * 2.0, 1e-9);
+  replay.seek(0.5);
+  now = seeds.news();
+  ASSERT_TRUE(now);
+  EXPECT_EQ(now->seeds.size(), 2u);
+  EXPECT_EQ(now->now->d90_percent, 20.0);
+  ASSERT_EQ(seeds.places().now_mm.size(), 2u);
+  EXPECT_EQ(seeds.places().now_mm[1], second.rest_mm) << "no tissue is known there";
+  replay.seek(0.9);
+  EXPECT_EQ(seeds.news()->seeds.size(), 1u);
+  replay.seek(0.5);
+  EXPECT_EQ(seeds.news()->seeds.size(), 2u) << "also backwards";
+}
+
+TEST(SeedJournal, tells_each_drop_and_each_seed_that_was_taken_back_once) {
+  SeedJournal journal;
+  LiveImplant implant;
+  SeedHistory seed;
+  seed.dropped_s = 3.0;
+  implant.seeds = {seed};
+  auto news = journal.news(implant, false, 0.0);
+  ASSERT_EQ(news.acts.size(), 1u);
+  EXPECT_EQ(news.acts[0].kind, SeedAct::Kind::earlier);
+  EXPECT_EQ(news.acts[0].time_s, 0.0) << "not at the time of its own needle";
+  seed.number = 1;
+  seed.dropped_s = 1.5;
+  implant.seeds.push_back(seed);
+  news = journal.news(implant, false, 1.4);
+  ASSERT_EQ(news.acts.size(), 1u);
+  EXPECT_EQ(news.acts[0].kind, SeedAct::Kind::dropped);
+  EXPECT_EQ(news.acts[0].time_s, 1.5);
+  implant.now = ImplantScore{.seeds = 2, .d90_Gy = 20.0};
+  EXPECT_TRUE(journal.news(implant, false, 1.6).doses.empty()) << "it may be of other seeds";
+  news = journal.news(implant, true, 1.6);
+  EXPECT_TRUE(news.acts.empty());
+  ASSERT_EQ(news.doses.size(), 1u);
+  EXPECT_EQ(news.doses[0].acts, 2);
+  // Taken back and dropped again at another place between two calls.
+  implant.seeds.back().dropped_s = 2.5;
+  news = journal.news(implant, false, 2.6);
+  ASSERT_EQ(news.acts.size(), 2u);
+  EXPECT_EQ(news.acts[0].kind, SeedAct::Kind::taken_back);
+  EXPECT_EQ(news.acts[1].kind, SeedAct::Kind::dropped);
+  implant.seeds.clear();
+  EXPECT_EQ(journal.news(implant, false, 3.0).acts.size(), 2u);
+}
+
+TEST(SeedJournal, keeps_a_plan_as_it_is) {
+  LivePlan plan;
+  plan.needles.resize(2);
+  plan.needles[1].name = "right";
+  plan.needles[1].hole = "D4";
+  plan.needles[1].depth_mm = 60.0;
+  plan.needles[1].seeds = {{3, Vec3(1, 2, 3), Vec3::UnitX(), 55.0}};
+  plan.current = 1;
+  plan.prescription_Gy = 145.0;
+  const LivePlan back = live_plan(recorded_plan(plan));
+  ASSERT_EQ(back.needles.size(), 2u);
+  EXPECT_TRUE(back.needles[0].seeds.empty());
+  EXPECT_EQ(back.needles[1].hole, "D4");
+  ASSERT_EQ(back.needles[1].seeds.size(), 1u);
+  EXPECT_EQ(back.needles[1].seeds[0].drop_depth_mm, 55.0);
+  EXPECT_EQ(back.current, 1);
+  EXPECT_EQ(back.prescription_Gy, 145.0);
 }

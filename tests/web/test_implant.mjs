@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { isFinished, meanMotion, nextNeedle, nextSeed, placesNow, whatToDo } from 'live/src/implant/implant';
+import { isFinished, meanMotion, nextNeedle, nextSeed, placesNow, replayWords, whatToDo } from 'live/src/implant/implant';
 import { isodoseRings, sliceOf } from 'live/src/implant/isodose';
 import { goalWords } from 'live/src/implant/end_card';
 import { decode, Kind, WireError } from 'live/src/wire';
@@ -29,6 +29,11 @@ test('what to do is said in words', () => {
   assert.match(whatToDo(plan(0), implant(0, 0), 40).text, /Needle A is empty/);
   assert.match(whatToDo(plan(-1), implant(), 40).text, /not in the plan/);
   assert.match(whatToDo(plan(1), implant(0, 0, 1), 40).text, /All seeds/);
+});
+
+test('a recording says what its needle had dropped', () => {
+  assert.match(replayWords(plan(0), implant(0, 1)), /^Recording\. Needle A, 1 of 2 seeds dropped\./);
+  assert.match(replayWords(plan(-1), null), /beside the plan/);
 });
 
 test('the next needle is the next one that has seeds', () => {

@@ -3,6 +3,7 @@
 
 #include "stylet/core/result.hpp"
 #include "stylet/geom/tet_mesh.hpp"
+#include "stylet/implant/recorded_implant.hpp"
 #include "stylet/sim/recording.hpp"
 
 #include <filesystem>
@@ -16,9 +17,10 @@ struct RunRecording {
   RunInfo info;
   TetMesh mesh;
   std::vector<Step> steps;
-  std::vector<Frame> frames;       ///< displacements in single precision
-  std::optional<Summary> summary;  ///< empty while the run goes on, or if it was killed
-  std::vector<Event> events{};     ///< events of the run; if the run was killed, only a live session has them
+  std::vector<Frame> frames;                 ///< displacements in single precision
+  std::optional<Summary> summary;            ///< empty while the run goes on, or if it was killed
+  std::vector<Event> events{};               ///< events of the run; if the run was killed, only a live session has them
+  std::optional<RecordedImplant> implant{};  ///< seeds of a live session; empty without a plan of seeds
 };
 
 /// Reads a run.h5. If it is still being written, or its writer was killed, the result has everything that had reached

@@ -3,6 +3,7 @@
 
 #include "stylet/core/result.hpp"
 #include "stylet/geom/tet_mesh.hpp"
+#include "stylet/implant/recorded_implant.hpp"
 #include "stylet/sim/recording.hpp"
 
 #include <filesystem>
@@ -18,13 +19,17 @@ namespace stylet {
 class RunRecorder {
  public:
   /// @param file is replaced if it exists
+  /// @param plan of the seeds that are dropped in this session; null: there is none
   static Result<std::unique_ptr<RunRecorder>> open(const std::filesystem::path& file, const RunInfo& info,
-                                                   const TetMesh& mesh);
+                                                   const TetMesh& mesh, const RecordedPlan* plan = nullptr);
   ~RunRecorder();  ///< writes all added data to the disk
 
   Result<> add_step(const Step& step);
   Result<> add_event(const Event& event);
   Result<> add_frame(const Frame& frame);  ///< stores the displacement in single precision
+  // Without a plan, these two are not recorded.
+  Result<> add_act(const SeedAct& act);
+  Result<> add_dose(const RecordedScore& dose);
 
  private:
   struct Parts;

@@ -39,23 +39,44 @@ Result<> Recorder::add_event(const Event& event) {
   return Ok{};
 }
 
+Result<> Recorder::add_act(const SeedAct& act) {
+  const std::lock_guard lock(mutex_);
+  if (error_) return *error_;
+  acts_.push_back(act);
+  return Ok{};
+}
+
+Result<> Recorder::add_dose(const RecordedScore& dose) {
+  const std::lock_guard lock(mutex_);
+  if (error_) return *error_;
+  doses_.push_back(dose);
+  return Ok{};
+}
+
 Result<> Recorder::write_pending() {
   std::vector<Step> steps;
   std::vector<StoredFrame> frames;
   std::vector<Event> events;
+  std::vector<SeedAct> acts;
+  std::vector<RecordedScore> doses;
   {
     const std::lock_guard lock(mutex_);
     steps.swap(steps_);
     frames.swap(frames_);
     events.swap(events_);
+    acts.swap(acts_);
+    doses.swap(doses_);
   }
-  if (steps.empty() && frames.empty() && events.empty()) return Ok{};
+  if (steps.empty() && frames.empty() && events.empty() && acts.empty() && doses.empty()) return Ok{};
   if (auto done = writer_.append_steps(steps); !done) return done;
   for (const StoredFrame& frame : frames) {
     if (auto done = writer_.append_frame(frame); !done) return done;
   }
   if (!events.empty()) {
     if (auto done = writer_.append_events(events); !done) return done;
+  }
+  if (!acts.empty() || !doses.empty()) {
+    if (auto done = writer_.append_seeds(acts, doses); !done) return done;
   }
   return writer_.flush();
 }

@@ -2,8 +2,7 @@
 #include "run_file_format.hpp"
 
 #include "model/digest.hpp"
-
-#include <zlib.h>
+#include "row_check.hpp"
 
 #include <cstddef>
 
@@ -20,28 +19,10 @@ h5::Handle enum_type(Enum last) {
   return type;
 }
 
-/// CRC-32 of a sequence of bytes and numbers.
-class Check {
- public:
-  Check& bytes(const void* data, std::size_t size) {
-    value_ = static_cast<std::uint32_t>(::crc32_z(value_, static_cast<const Bytef*>(data), size));
-    return *this;
-  }
-  template <class... Number>
-  Check& numbers(const Number&... number) {
-    (bytes(&number, sizeof number), ...);
-    return *this;
-  }
-  [[nodiscard]] std::uint32_t value() const { return value_; }
-
- private:
-  std::uint32_t value_ = 0;
-};
-
 }  // namespace
 
 std::uint32_t check_of(const StepRow& r) {
-  return Check()
+  return RowCheck()
       .numbers(r.time_s, r.dt_s, r.base_x_mm, r.base_y_mm, r.base_z_mm, r.base_qw, r.base_qx, r.base_qy, r.base_qz,
                r.base_depth_mm, r.force_axial_N, r.force_sagittal_N, r.force_lateral_N)
       .numbers(r.torque_x_Nmm, r.torque_y_Nmm, r.torque_z_Nmm, r.tip_x_mm, r.tip_y_mm, r.tip_z_mm, r.tip_state,
@@ -51,7 +32,7 @@ std::uint32_t check_of(const StepRow& r) {
 
 std::uint32_t check_of(const FrameRow& r, std::span<const float> displacement, std::span<const Vec3> needle,
                        std::span<const ContactRow> contacts) {
-  Check check;
+  RowCheck check;
   check.numbers(r.time_s, r.base_depth_mm, r.label, r.needle_first, r.needle_count, r.contact_first, r.contact_count);
   check.bytes(displacement.data(), displacement.size_bytes()).bytes(needle.data(), needle.size_bytes());
   for (const ContactRow& c : contacts) check.numbers(c.position_mm, c.force_N, c.arc_length_mm, c.sticking, c.tip);
@@ -59,14 +40,17 @@ std::uint32_t check_of(const FrameRow& r, std::span<const float> displacement, s
 }
 
 std::uint32_t check_of(const EventRow& r) {
-  return Check().numbers(r.kind, r.time_s, r.depth_mm, r.force_N, r.region).value();
+  return RowCheck().numbers(r.kind, r.time_s, r.depth_mm, r.force_N, r.region).value();
 }
 
-std::uint32_t check_of(const EndRow& r) {
-  return Check().numbers(r.steps, r.frames, r.events, r.summary_bytes, r.summary_check).value();
+std::uint32_t check_of(const EndRow& r, int version) {
+  RowCheck check;
+  check.numbers(r.steps, r.frames, r.events, r.summary_bytes, r.summary_check);
+  if (version >= kFirstWithSeeds) check.numbers(r.acts, r.doses);
+  return check.value();
 }
 
-std::uint32_t check_of(std::string_view summary) { return Check().bytes(summary.data(), summary.size()).value(); }
+std::uint32_t check_of(std::string_view summary) { return RowCheck().bytes(summary.data(), summary.size()).value(); }
 
 StepRow to_row(const Step& s) {
   StepRow row;
@@ -233,6 +217,8 @@ h5::Handle end_row_type() {
   h5::insert_member(type, "events", offsetof(EndRow, events), H5T_NATIVE_INT64);
   h5::insert_member(type, "summary_bytes", offsetof(EndRow, summary_bytes), H5T_NATIVE_INT64);
   h5::insert_member(type, "summary_check", offsetof(EndRow, summary_check), H5T_NATIVE_UINT32);
+  h5::insert_member(type, "acts", offsetof(EndRow, acts), H5T_NATIVE_INT64);
+  h5::insert_member(type, "doses", offsetof(EndRow, doses), H5T_NATIVE_INT64);
   h5::insert_member(type, "check", offsetof(EndRow, check), H5T_NATIVE_UINT32);
   return type;
 }

@@ -13,8 +13,9 @@
 /// The format of run.h5 (docs/results.md): row types shared by its writer and its reader.
 namespace stylet::results {
 
-inline constexpr int kRunFileVersion = 4;
+inline constexpr int kRunFileVersion = 5;
 inline constexpr int kFirstWithChecks = 4;  ///< first version of the format with checks
+inline constexpr int kFirstWithSeeds = 5;   ///< first version of the format that may have the seeds of an implant
 inline constexpr const char* kRunFileFormat = "stylet-run";
 inline constexpr const char* kImplantFileFormat = "stylet-implant";  ///< of the run.h5 of an implant
 /// Fill value of rows that have not reached the disk.
@@ -85,10 +86,12 @@ h5::Handle event_row_type();
 struct EndRow {
   std::int64_t steps = 0, frames = 0, events = 0;
   std::int64_t summary_bytes = 0;
-  std::uint32_t summary_check = 0;  ///< CRC-32 of /summary_json
+  std::uint32_t summary_check = 0;   ///< CRC-32 of /summary_json
+  std::int64_t acts = 0, doses = 0;  ///< of /implant; files before version 5 do not have them
   std::uint32_t check = 0;
 };
-std::uint32_t check_of(const EndRow& row);
+/// @param version of the file's format
+std::uint32_t check_of(const EndRow& row, int version = kRunFileVersion);
 std::uint32_t check_of(std::string_view summary);
 h5::Handle end_row_type();
 

@@ -120,7 +120,7 @@ Frame frame_of(const StoredRun& run, std::size_t k) {
 /// The row of /end, if the writer has written it.
 std::optional<EndRow> end_of(const StoredRun& run) {
   if (run.end.empty()) return std::nullopt;
-  demand(run.end.size() == 1 && run.end[0].check == check_of(run.end[0]), "/end");
+  demand(run.end.size() == 1 && run.end[0].check == check_of(run.end[0], run.format_version), "/end");
   return run.end[0];
 }
 
@@ -132,6 +132,37 @@ std::string summary_of(const StoredRun& run, const std::optional<EndRow>& end) {
              (run.summary.empty() || end->summary_check == check_of(run.summary)),
          "/summary_json");
   return run.summary;
+}
+
+/// The seeds of a live session; empty if the file has none.
+/// @param end the row of /end, if the writer has written it
+std::optional<RecordedImplant> implant_of(const StoredSeeds& stored, const std::optional<EndRow>& end) {
+  if (stored.needles.empty()) {
+    demand(!end || (end->acts == 0 && end->doses == 0), "/implant");
+    return std::nullopt;
+  }
+  demand(stored.digest == plan_digest(stored), "/implant: the plan");
+  std::optional<RecordedPlan> plan = plan_of(stored);
+  demand(plan.has_value(), "/implant: the plan");
+  RecordedImplant out{*std::move(plan), {}, {}};
+  const auto said = [&](std::int64_t EndRow::*count) {
+    return end ? std::optional((*end).*count) : std::optional<std::int64_t>();
+  };
+  const std::size_t acts = rows_of(
+      stored.acts.size(), [&](std::size_t k) { return stored.acts[k].check == check_of(stored.acts[k]); },
+      said(&EndRow::acts), "/implant/acts");
+  for (std::size_t k = 0; k < acts; ++k) {
+    const ActRow& row = stored.acts[k];
+    demand(row.kind >= 0 && row.kind <= static_cast<std::int8_t>(SeedAct::Kind::taken_back), "/implant/acts: kind");
+    demand(row.number >= 1 && row.needle >= 0 && static_cast<std::uint64_t>(row.needle) < stored.needles.size(),
+           "/implant/acts: number, needle");
+    out.acts.push_back(from_row(row));
+  }
+  const std::size_t doses = rows_of(
+      stored.doses.size(), [&](std::size_t k) { return stored.doses[k].check == check_of(stored.doses[k]); },
+      said(&EndRow::doses), "/implant/doses");
+  for (std::size_t k = 0; k < doses; ++k) out.doses.push_back(from_row(stored.doses[k]));
+  return out;
 }
 
 /// Checks a stored run and converts it. Throws Changed if its data differ from what was written.
@@ -164,6 +195,7 @@ RunRecording checked(StoredRun run, const fs::path& path) {
     demand(kind >= 0 && kind <= static_cast<std::int8_t>(EventKind::grazed), "/events: kind");
     out.events.push_back(from_row(run.events[k]));
   }
+  out.implant = implant_of(run.seeds, end);
   if (const std::string summary = summary_of(run, end); !summary.empty()) {
     if (auto parsed = parse_summary_json(summary, path.string()); parsed.ok()) out.summary = std::move(*parsed);
   }

@@ -79,7 +79,7 @@ Result<> RunFileWriter::guarded(Action action) const {
 }
 
 Result<RunFileWriter> RunFileWriter::create(const fs::path& path, const RunInfo& info, const TetMesh& mesh,
-                                            const std::function<Result<>()>& make_way) {
+                                            const std::function<Result<>()>& make_way, const RecordedPlan* plan) {
   // The new file gets another name first: truncating an earlier file in place would break processes that read it.
   remove_abandoned(path);
   const fs::path hidden = hidden_name(path, std::to_string(::getpid()));
@@ -112,6 +112,7 @@ Result<RunFileWriter> RunFileWriter::create(const fs::path& path, const RunInfo&
     w.events_ = h5::growing_dataset(w.file_, "events", w.event_type_, {}, kTableChunk, &no_event);
     w.summary_ = h5::growing_dataset(w.file_, "summary_json", H5T_NATIVE_UINT8, {}, kTextChunk, nullptr);
     w.end_ = h5::growing_dataset(w.file_, "end", w.end_type_, {}, 1, &no_end);
+    if (plan != nullptr) w.seeds_.emplace(w.file_, *plan);
     h5::check(H5Fstart_swmr_write(w.file_), "start recording");
   });
   if (done && make_way) done = make_way();
@@ -168,6 +169,16 @@ Result<> RunFileWriter::append_events(std::span<const Event> events) {
   });
 }
 
+Result<> RunFileWriter::append_seeds(std::span<const SeedAct> acts, std::span<const RecordedScore> doses) {
+  if (!seeds_) return Ok{};
+  return guarded([&] {
+    seeds_->append(acts);
+    seeds_->append(doses);
+    written_.acts += static_cast<std::int64_t>(acts.size());
+    written_.doses += static_cast<std::int64_t>(doses.size());
+  });
+}
+
 Result<> RunFileWriter::append_summary(const Summary& summary) {
   const std::size_t there = std::min(static_cast<std::size_t>(written_.events), summary.events.size());
   if (auto done = append_events(std::span(summary.events).subspan(there)); !done) return done;
@@ -195,6 +206,7 @@ Result<> RunFileWriter::close() {
          {&steps_, &frame_table_, &displacement_, &needle_, &contacts_, &events_, &summary_, &end_}) {
       good = data->reset() && good;
     }
+    if (seeds_) good = seeds_->close() && good;
     for (h5::Handle* type : {&step_type_, &frame_type_, &contact_type_, &event_type_, &end_type_}) type->reset();
     if (!file_.reset() || !good) h5::fail("close");
   });

@@ -2,12 +2,14 @@
 #pragma once
 
 #include "run_file_format.hpp"
+#include "seed_tables.hpp"
 #include "stylet/core/result.hpp"
 #include "stylet/geom/tet_mesh.hpp"
 #include "stylet/sim/recording.hpp"
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 
 namespace stylet::results {
@@ -26,12 +28,16 @@ class RunFileWriter {
   /// Creates the file. An earlier file at `path` is replaced only when all data that are known before the run have been
   /// written.
   /// @param make_way is called right before the replacement; if it fails, nothing is changed
+  /// @param plan of the seeds that are dropped in this run; null: there is none
   static Result<RunFileWriter> create(const std::filesystem::path& path, const RunInfo& info, const TetMesh& mesh,
-                                      const std::function<Result<>()>& make_way = {});
+                                      const std::function<Result<>()>& make_way = {},
+                                      const RecordedPlan* plan = nullptr);
 
   Result<> append_steps(std::span<const Step> steps);
   Result<> append_frame(const StoredFrame& stored);
   Result<> append_events(std::span<const Event> events);
+  /// Writes acts and doses of the plan that was given to create(); without a plan, nothing.
+  Result<> append_seeds(std::span<const SeedAct> acts, std::span<const RecordedScore> doses);
   /// Writes the summary, and those of its events that are not in the file yet. To be called once, at the end.
   Result<> append_summary(const Summary& summary);
   Result<> flush();  ///< writes all appended data to the file
@@ -47,6 +53,7 @@ class RunFileWriter {
   h5::Handle file_;
   h5::Handle step_type_, frame_type_, contact_type_, event_type_, end_type_;
   h5::Handle steps_, frame_table_, displacement_, needle_, contacts_, events_, summary_, end_;
+  std::optional<SeedTables> seeds_;
   std::int64_t needle_points_ = 0;
   std::int64_t contact_count_ = 0;
   EndRow written_;

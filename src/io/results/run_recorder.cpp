@@ -12,8 +12,8 @@ struct RunRecorder::Parts {
 };
 
 Result<std::unique_ptr<RunRecorder>> RunRecorder::open(const std::filesystem::path& file, const RunInfo& info,
-                                                       const TetMesh& mesh) {
-  auto writer = results::RunFileWriter::create(file, info, mesh);
+                                                       const TetMesh& mesh, const RecordedPlan* plan) {
+  auto writer = results::RunFileWriter::create(file, info, mesh, {}, plan);
   if (!writer) return writer.error();
   return std::unique_ptr<RunRecorder>(new RunRecorder(std::make_unique<Parts>(std::move(*writer))));
 }
@@ -23,6 +23,8 @@ RunRecorder::~RunRecorder() = default;
 
 Result<> RunRecorder::add_step(const Step& step) { return parts_->recorder.add_step(step); }
 Result<> RunRecorder::add_event(const Event& event) { return parts_->recorder.add_event(event); }
+Result<> RunRecorder::add_act(const SeedAct& act) { return parts_->recorder.add_act(act); }
+Result<> RunRecorder::add_dose(const RecordedScore& dose) { return parts_->recorder.add_dose(dose); }
 Result<> RunRecorder::add_frame(const Frame& frame) {
   results::StoredFrame stored;
   stored.displacement.reserve(static_cast<std::size_t>(frame.displacement.size()));

@@ -3,6 +3,7 @@
 
 #include "detail/wire.hpp"
 #include "run_file_format.hpp"
+#include "seed_tables.hpp"
 #include "stylet/core/result.hpp"
 
 #include <filesystem>
@@ -27,6 +28,7 @@ struct StoredRun {
   std::vector<Vec3> needle;
   std::vector<ContactRow> contacts;
   std::vector<EventRow> events;
+  StoredSeeds seeds;
   std::string summary;
   std::vector<EndRow> end;  ///< empty while the run goes on and if it was killed
 };
@@ -36,9 +38,13 @@ struct StoredRun {
 Result<StoredRun> parse_run_file(const std::filesystem::path& path);
 
 // Serialisation from the child process to its parent (detail/wire.hpp).
+void fields(auto& wire, StoredSeeds& s) {
+  wire(s.digest, s.needles, s.planned, s.current, s.seed_length_mm, s.seed_diameter_mm, s.prescription_Gy, s.source,
+       s.acts, s.doses);
+}
 void fields(auto& wire, StoredRun& r) {
   wire(r.format_version, r.start_digest, r.info, r.mesh, r.steps, r.frames, r.displacement, r.needle, r.contacts,
-       r.events, r.summary, r.end);
+       r.events, r.seeds, r.summary, r.end);
 }
 
 }  // namespace stylet::results
@@ -65,5 +71,13 @@ template <>
 inline constexpr bool is_plain<results::EventRow> = true;
 template <>
 inline constexpr bool is_plain<results::EndRow> = true;
+template <>
+inline constexpr bool is_plain<results::PlanNeedleRow> = true;
+template <>
+inline constexpr bool is_plain<results::PlanSeedRow> = true;
+template <>
+inline constexpr bool is_plain<results::ActRow> = true;
+template <>
+inline constexpr bool is_plain<results::DoseRow> = true;
 
 }  // namespace stylet::detail

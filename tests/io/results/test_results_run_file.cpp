@@ -429,6 +429,141 @@ TEST(RunFile, with_any_bit_changed_is_refused_or_reads_as_it_was_written) {
   }
 }
 
+namespace {
+
+RecordedPlan two_needles() {
+  RecordedPlan plan;
+  plan.needles = {{"B4", "B4", Vec3(1, 2, 3), Vec3::UnitZ(), 70.0}, {"beside", "", Vec3(4, 5, 6), Vec3::UnitX(), 60.0}};
+  plan.seeds = {{7, 0, Vec3(1, 2, 60), Vec3::UnitZ(), 62.0}, {8, 1, Vec3(30, 5, 6), Vec3::UnitX(), 52.0}};
+  plan.current = 1;
+  plan.seed_length_mm = 4.5;
+  plan.seed_diameter_mm = 0.8;
+  plan.prescription_Gy = 145.0;
+  plan.source = "i125_6711";
+  return plan;
+}
+
+std::vector<SeedAct> three_acts() {
+  SeedHistory seed;
+  seed.number = 7;
+  seed.planned_mm = Vec3(1, 2, 60);
+  seed.dropped_mm = Vec3(1.5, 2, 61);
+  seed.rest_mm = Vec3(1.25, 2, 58.5);
+  seed.axis = Vec3::UnitZ();
+  seed.dropped_s = 4.5;
+  seed.by(SeedCause::aim) = Vec3(0.5, 0, 1);
+  seed.by(SeedCause::motion) = Vec3(-0.25, 0, -2.5);
+  SeedHistory other = seed;
+  other.number = 8;
+  other.needle = 1;
+  other.in_tissue = false;
+  return {{SeedAct::Kind::earlier, 0.0, seed},
+          {SeedAct::Kind::dropped, 1.25, other},
+          {SeedAct::Kind::taken_back, 2.5, other}};
+}
+
+void write_with_seeds(const fs::path& path, const SyntheticRun& run, bool finished) {
+  const RecordedPlan plan = two_needles();
+  auto writer = RunFileWriter::create(path, run.info, run.mesh, {}, &plan);
+  ASSERT_TRUE(writer.ok()) << writer.error().message();
+  ASSERT_TRUE(writer->append_steps(run.steps).ok());
+  const std::vector<RecordedScore> scores{{RecordedScore::kOfPlan, 2, 160.0, 110.0, 97.0}, {2, 2, 20.0, 14.0, 3.0}};
+  ASSERT_TRUE(writer->append_seeds(three_acts(), scores).ok());
+  ASSERT_TRUE((finished ? writer->close() : writer->flush()).ok());
+}
+
+}  // namespace
+
+TEST(RunFile, of_a_live_session_holds_the_seeds_of_its_implant) {
+  const auto run = synthetic_run();
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "run.h5";
+  for (const bool finished : {true, false}) {
+    write_with_seeds(path, run, finished);
+    const auto back = read_recording(path);
+    ASSERT_TRUE(back.ok()) << back.error().message();
+    ASSERT_TRUE(back->implant);
+    const RecordedPlan& plan = back->implant->plan;
+    ASSERT_EQ(plan.needles.size(), 2u);
+    EXPECT_EQ(plan.needles[1].name, "beside");
+    EXPECT_EQ(plan.needles[0].hole, "B4");
+    EXPECT_EQ(plan.needles[1].direction, Vec3::UnitX());
+    ASSERT_EQ(plan.seeds.size(), 2u);
+    EXPECT_EQ(plan.seeds[1].number, 8u);
+    EXPECT_EQ(plan.seeds[1].needle, 1u);
+    EXPECT_EQ(plan.seeds[1].drop_depth_mm, 52.0);
+    EXPECT_EQ(plan.current, 1);
+    EXPECT_EQ(plan.source, "i125_6711");
+    const auto& acts = back->implant->acts;
+    ASSERT_EQ(acts.size(), 3u);
+    const SeedHistory expected = three_acts()[1].seed;
+    EXPECT_EQ(acts[1].kind, SeedAct::Kind::dropped);
+    EXPECT_EQ(acts[1].time_s, 1.25);
+    EXPECT_EQ(acts[1].seed.needle, 1u);
+    EXPECT_EQ(acts[1].seed.rest_mm, expected.rest_mm);
+    EXPECT_EQ(acts[1].seed.dropped_s, 4.5);
+    EXPECT_EQ(acts[1].seed.by(SeedCause::motion), expected.by(SeedCause::motion));
+    EXPECT_FALSE(acts[1].seed.in_tissue);
+    // What was in the tissue at each moment follows from the acts.
+    EXPECT_EQ(back->implant->seeds_after(back->implant->acts_until(1.0)).size(), 1u);
+    EXPECT_EQ(back->implant->seeds_after(back->implant->acts_until(1.25)).size(), 2u);
+    ASSERT_EQ(back->implant->seeds_after(back->implant->acts_until(9.0)).size(), 1u);
+    EXPECT_EQ(back->implant->seeds_after(3)[0].number, 7u);
+    EXPECT_EQ(back->implant->dose_after(2)->d90_percent, 14.0);
+    EXPECT_EQ(back->implant->dose_after(RecordedScore::kOfPlan)->d90_Gy, 160.0);
+    EXPECT_FALSE(back->implant->dose_after(3)) << "it was not computed";
+  }
+}
+
+TEST(RunFile, with_a_changed_seed_is_refused) {
+  const auto run = synthetic_run({.cells = {4, 4, 5}, .step_s = 0.05, .frames = 4});
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "run.h5";
+  write_with_seeds(path, run, true);
+  {
+    const h5::Handle file(h5::check(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "open"), H5Fclose);
+    const h5::Handle acts = h5::dataset(file, "implant/acts");
+    const h5::Handle column = h5::compound_type(sizeof(double));
+    h5::insert_member(column, "time_s", 0, H5T_NATIVE_DOUBLE);
+    const std::array<double, 1> later{1.5};
+    h5::write_rows(acts, column, 1, 1, later.data());
+  }
+  const auto back = read_recording(path);
+  ASSERT_FALSE(back.ok());
+  EXPECT_NE(back.error().message().find("/implant/acts"), std::string::npos) << back.error().message();
+}
+
+TEST(RunFile, of_the_version_before_seeds_is_read_with_its_checks) {
+  const auto run = synthetic_run({.cells = {4, 4, 5}, .step_s = 0.05, .frames = 4});
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "run.h5";
+  std::ofstream(path, std::ios::binary) << bytes_of(run, true);
+  const auto expected = read_recording(path);
+  ASSERT_TRUE(expected.ok());
+  {
+    const h5::Handle file(h5::check(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "open"), H5Fclose);
+    h5::check(H5Adelete(file, "format_version"), "delete");
+    h5::write_attribute(file, "format_version", std::array{4});
+    EndRow row;
+    h5::read_rows(h5::dataset(file, "end"), end_row_type(), 0, 1, &row);
+    row.check = check_of(row, 4);
+    const h5::Handle then(h5::check(H5Tcreate(H5T_COMPOUND, sizeof(EndRow)), "type"), H5Tclose);
+    for (const char* name : {"steps", "frames", "events", "summary_bytes", "summary_check", "check"}) {
+      const h5::Handle now = end_row_type();
+      const auto k = static_cast<unsigned>(H5Tget_member_index(now, name));
+      const h5::Handle type(H5Tget_member_type(now, k), H5Tclose);
+      h5::check(H5Tinsert(then, name, H5Tget_member_offset(now, k), type), "insert");
+    }
+    h5::check(H5Ldelete(file, "end", H5P_DEFAULT), "delete");
+    const h5::Handle end = h5::growing_dataset(file, "end", then, {}, 1, nullptr);
+    h5::append_rows(end, then, 1, &row);
+  }
+  const auto back = read_recording(path);
+  ASSERT_TRUE(back.ok()) << back.error().message();
+  EXPECT_FALSE(back->implant);
+  EXPECT_EQ(back->steps.size(), expected->steps.size());
+}
+
 TEST(RunFile, of_earlier_versions_is_read_without_checks) {
   const auto run = synthetic_run();
   const TemporaryFolder folder;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // An implant in the page: a row of seeds is dropped with the keys, D90 appears, seeds move with the tissue, a drop is
-// taken back, the next needle comes at once, and the result says why the seeds are off.
+// taken back, the next needle comes at once, the result says why the seeds are off, and a recording shows the seeds again.
 import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { readdirSync } from 'node:fs';
 import path from 'node:path';
 import { after, before } from 'node:test';
 import { fileURLToPath } from 'node:url';
@@ -40,6 +42,13 @@ async function planFigure(name) {
 }
 const notice = (text) => page.locator('.notice', { hasText: text }).waitFor();
 const dropped = () => planFigure('Seeds');
+
+/** What stylet info prints about the recording of a needle. */
+function info(recordings, needle) {
+  const name = readdirSync(recordings).filter((file) => file.endsWith(`-${needle}`)).sort()[0];
+  const program = process.env.STYLET ?? path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../../../build/bin/stylet');
+  return JSON.parse(execFileSync(program, ['info', path.join(recordings, name, 'run.h5'), '--json', '-']));
+}
 
 /** Moves the needle to its next seed with a key and waits until it is in place. */
 async function goToSeed() {
@@ -139,5 +148,48 @@ test('the result says how far the seeds are off, and why', async () => {
     assert.ok(text.includes(part), `${part} is missing in ${text}`);
   await keepPicture(page, 'implant-result');
   await page.getByRole('button', { name: 'Go on' }).click();
+});
+
+test('a recording of a needle shows the seeds of each moment, and its panel cannot be used', async () => {
+  const live = newest[IMPLANT];
+  const shown = () => newest[IMPLANT].seeds.length;
+  const first = newest[PLAN].needles[live.seeds[0].needle];
+  await page.waitForTimeout(1000);  // recordings are written to the disk five times a second
+  await page.getByRole('button', { name: 'Recordings' }).click();
+  const rows = page.locator('dialog table tr').filter({ has: page.getByRole('button', { name: 'Replay' }) });
+  // The recording of the first needle that dropped seeds, with which the page began.
+  await rows.filter({ has: page.getByRole('cell', { name: new RegExp(`-${first.name}$`) }) }).getByRole('button', { name: 'Replay' }).last().click();
+  await page.locator('#replay').waitFor();
+  await page.locator('.todo', { hasText: /^Recording\. Needle/ }).waitFor();
+  await until('no seed at its start', shown, (count) => count === 0);
+  const time = page.getByLabel('Time of the recording');
+  const seek = (seconds) => time.evaluate((input, to) => {
+    input.value = String(to);
+    input.dispatchEvent(new Event('input'));
+    input.dispatchEvent(new Event('change'));
+  }, seconds);
+  const end = Number(await time.getAttribute('max'));
+  await seek(end);
+  await until('all its seeds', shown, (count) => count === first.seeds.length);
+  // Going back in time, seeds disappear; at the moment of its drop a seed is where the needle has left it.
+  const k = Math.floor(first.seeds.length / 2);
+  const row = newest[IMPLANT].seeds[k];
+  const dropped_s = info(path.join(folder, 'live'), first.name).implant.acts.filter((act) => act.kind === 'dropped')[k].time_s;
+  await seek(dropped_s - 0.05);
+  await until('the seeds before', shown, (count) => count === k);
+  await seek(dropped_s + 0.02);
+  await until('one seed more', shown, (count) => count === k + 1);
+  await until('its place', () => newest[SEEDS].now_mm.length, (count) => count === k + 1);
+  const off = Math.hypot(...row.dropped_mm.map((x, i) => x - newest[SEEDS].now_mm[k][i]));
+  console.log(`At its drop the replay shows seed ${k + 1} ${off.toFixed(2)} mm from where it was dropped`);
+  assert.ok(off < 1.5, `${off} mm`);
+  assert.ok(newest[IMPLANT].now.d90_Gy > 0);
+  assert.match(await page.locator('.todo').textContent(), new RegExp(`${k + 1} of ${first.seeds.length} seeds dropped`));
+  assert.equal(await page.locator('#implant button:visible').filter({ hasText: /Drop|Go there|Take back|Next/ }).count(), 0);
+  await keepPicture(page, 'implant-replay');
+  await page.keyboard.press('u');
+  await page.getByRole('button', { name: 'Back to the live needle' }).click();
+  await until('the live seeds', () => newest[IMPLANT], (now) => now.seeds.length === live.seeds.length && now.now?.goals.length > 0);
+  assert.deepEqual(newest[IMPLANT].seeds, live.seeds);
   assert.deepEqual(problems, []);
 });

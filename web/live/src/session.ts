@@ -55,6 +55,11 @@ export class Session implements TransportListener {
     return this.connected && this.status?.state === 'ready' && this.status.you_hold === true && this.status.mode !== 'replay';
   }
 
+  /** Whether a recording is shown instead of the live needle. */
+  get replaying(): boolean {
+    return this.status?.mode === 'replay';
+  }
+
   /** The name of the device that moves the needle instead of a page; empty: there is none. */
   get guest(): string {
     const { device, mode } = this.status ?? {};

@@ -160,7 +160,7 @@ export class PushBar {
     if (!frame || !scene) return;
     const planned = scene.insertions.find((i) => i.name === status?.insertion)?.depth_mm;
     this.labelled.length = 0;
-    const seeds = status?.mode === 'replay' ? null : currentNeedle(this.session.plan)?.seeds;
+    const seeds = currentNeedle(this.session.plan)?.seeds;
     if (seeds) this.drawSeeds(seeds.map((seed) => seed.drop_depth_mm), middle, text);
     else if (planned !== undefined) this.flag(planned, middle, 'planned depth', SOFT, text);
     for (const event of this.session.events) {

@@ -68,7 +68,7 @@ export class EndCard {
     session.on('implant', (implant) => {
       const finished = isFinished(implant);
       const known = !implant.computing && implant.now !== null;
-      if (finished && known && this.finished === false) this.show();
+      if (finished && known && this.finished === false && !session.replaying) this.show();
       else if (this.dialog.open && known) this.fill(implant);
       // A page that is opened after the end does not show the card by itself.
       if (!finished) this.finished = false;
@@ -90,13 +90,14 @@ export class EndCard {
     const of = now?.goals.filter((g) => g.value !== null).length ?? 0;
     const could = planned?.goals.filter((g) => g.met).length ?? 0;
     const lead = element('p', 'lead');
+    if (this.session.replaying) lead.append('At this moment of the recording: ');
     lead.append(element('b', '', finished ? 'The implant is finished. ' : `${seeds.length} of ${implant.planned_seeds} seeds have been dropped. `),
       of > 0 ? `It keeps ${met} of ${of} goals; the plan keeps ${could}.` : '');
     const columns = element('div', 'card-columns');
     const left = element('div');
     const right = element('div');
     columns.append(left, right);
-    left.append(this.figures(now, planned), this.goals(now, planned));
+    left.append(this.figures(now, planned), this.session.replaying ? element('p', 'cure', 'A recording has D90 and V100, not the other goals.') : this.goals(now, planned));
     right.append(...this.errors(implant), ...this.reasons(implant));
     const foot = element('div', 'card-foot');
     const again = button('Begin again with all seeds', () => {
@@ -104,6 +105,7 @@ export class EndCard {
       this.dialog.close();
     });
     again.disabled = !this.session.steering;
+    again.hidden = this.session.replaying;
     const close = button(finished ? 'Close' : 'Go on', () => this.dialog.close());
     close.classList.add('primary');
     foot.append(element('strong', 'not-medical', 'Not a medical device. A simulation for research and teaching.'), again, close);

@@ -80,6 +80,13 @@ export function whatToDo(plan: Plan, implant: Implant | null, depth: number): { 
   return { text: `${which}: ${togo > 0 ? 'push in' : 'pull back'} ${Math.abs(togo).toFixed(1)} mm`, inPlace: false };
 }
 
+/** The words of the panel while a recording is shown: what its needle had dropped at the moment that is shown. */
+export function replayWords(plan: Plan, implant: Implant | null): string {
+  const needle = currentNeedle(plan);
+  const which = needle ? `Needle ${needle.name}, ${droppedOf(implant, plan.current)} of ${needle.seeds.length} seeds dropped` : 'A needle beside the plan';
+  return `Recording. ${which}. D90 is as it was computed then.`;
+}
+
 /** The mean motion [mm] of the dropped seeds from where they rest; zero without seeds. */
 export function meanMotion(implant: Implant | null, seeds: Seeds | null): Place {
   const sum: Place = [0, 0, 0];

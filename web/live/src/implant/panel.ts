@@ -4,7 +4,7 @@ import { button, element } from '../../../shared/dom';
 import type { HandControl } from '../hand';
 import { onRepaintEvery } from '../repaint';
 import type { Session } from '../session';
-import { droppedOf, isFinished, nextNeedle, nextSeed, whatToDo, type Plan } from './implant';
+import { droppedOf, isFinished, nextNeedle, nextSeed, replayWords, whatToDo, type Plan } from './implant';
 
 const WRITE_EVERY_MS = 60;
 
@@ -31,9 +31,9 @@ class PlanFigure {
 export class ImplantActions {
   constructor(private readonly session: Session, private readonly hand: HandControl) {}
 
-  /** Whether this case has a plan that this page can carry out. */
+  /** Whether this case has a plan that this page can carry out, which that of a recording is not. */
   get isThere(): boolean {
-    return this.session.plan !== null && this.session.status?.mode !== 'replay';
+    return this.session.plan !== null && !this.session.replaying;
   }
   drop(): void {
     this.session.command({ do: 'drop' });
@@ -102,13 +102,14 @@ export class ImplantPanel {
   private write(): void {
     const { session } = this;
     const { plan, implant, frame, status } = session;
-    const there = this.actions.isThere;
+    const there = plan !== null;
     document.body.classList.toggle('has-plan', there);
     this.root.hidden = !there;
     if (!plan || !there) return;
     if (this.listed === null || this.listed.length !== plan.needles.length || this.listed.some((n, k) => n.name !== plan.needles[k].name)) this.build(plan);
     this.figures();
-    const { text, inPlace } = whatToDo(plan, implant, frame?.depth ?? 0);
+    const { text, inPlace } = session.replaying ? { text: replayWords(plan, implant), inPlace: false } : whatToDo(plan, implant, frame?.depth ?? 0);
+    for (const action of [this.drop, this.go, this.undo, this.next]) action.hidden = session.replaying;
     if (this.todo.textContent !== text) this.todo.textContent = text;
     if (this.todo.title !== text) this.todo.title = text;
     this.todo.classList.toggle('in-place', inPlace);
@@ -121,17 +122,18 @@ export class ImplantPanel {
     const next = nextNeedle(plan, implant);
     this.next.disabled = !session.steering || next < 0 || next === plan.current;
     this.next.classList.toggle('suggested', !seed && next >= 0);
-    this.result.classList.toggle('suggested', isFinished(implant));
+    this.result.classList.toggle('suggested', isFinished(implant) && !session.replaying);
     this.result.disabled = !implant || implant.seeds.length === 0;
     this.chips.forEach(({ chip, fill }, k) => {
       const of = plan.needles[k];
       const dropped = droppedOf(implant, k);
       const state = dropped >= of.seeds.length ? 'done' : dropped > 0 ? 'begun' : '';
-      const name = `plan-needle ${k === plan.current ? 'current' : ''} ${k === next ? 'next' : ''} ${state} ${of.ready || k === plan.current ? 'ready' : ''}`.replace(/ +/g, ' ').trim();
+      const name = `plan-needle ${k === plan.current ? 'current' : ''} ${k === next && !session.replaying ? 'next' : ''} ${state} ${of.ready || k === plan.current || session.replaying ? 'ready' : ''}`.replace(/ +/g, ' ').trim();
       if (chip.className !== name) chip.className = name;
       chip.disabled = !session.steering;
       fill.style.width = `${(100 * dropped) / of.seeds.length}%`;
-      const title = `Needle ${of.name}: ${dropped} of ${of.seeds.length} seeds dropped${k === plan.current ? '; it is in your hand' : of.ready ? '; ready' : '; it takes some seconds to prepare'}`;
+      const readiness = session.replaying ? (k === plan.current ? '; the recorded one' : '') : k === plan.current ? '; it is in your hand' : of.ready ? '; ready' : '; it takes some seconds to prepare';
+      const title = `Needle ${of.name}: ${dropped} of ${of.seeds.length} seeds dropped${readiness}`;
       if (chip.title !== title) {
         chip.title = title;
         chip.setAttribute('aria-label', title);

@@ -17,7 +17,7 @@ export class SeedMarks {
   constructor(private readonly box: CanvasBox, private readonly session: Session, private readonly axis: 0 | 2) {}
 
   private get isThere(): boolean {
-    return this.session.plan !== null && this.session.status?.mode !== 'replay';
+    return this.session.plan !== null;
   }
 
   drawDose(value: number, place: Place): void {

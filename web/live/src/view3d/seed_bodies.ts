@@ -43,7 +43,7 @@ export class SeedBodies {
   /** Shows the seeds of a session. @param on false: hides them */
   show(session: Session, on: boolean): void {
     const { plan, implant, seeds } = session;
-    this.object.visible = on && plan !== null && session.status?.mode !== 'replay';
+    this.object.visible = on && plan !== null;
     if (!plan || !this.object.visible) return;
     const all = plan.needles.flatMap((needle) => needle.seeds);
     const key = `${all.length} ${plan.seed_length_mm}`;

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "replayed_seeds.hpp"
+
+#include "seed_journal.hpp"
+
+#include "stylet/geom/topology.hpp"
+
+namespace stylet::serve {
+
+namespace {
+
+std::optional<ImplantScore> score_of(const std::optional<RecordedScore>& dose) {
+  if (!dose) return std::nullopt;
+  ImplantScore score;
+  score.seeds = static_cast<std::size_t>(dose->seeds);
+  score.d90_Gy = dose->d90_Gy;
+  score.d90_percent = dose->d90_percent;
+  score.v100_percent = dose->v100_percent;
+  return score;
+}
+
+}  // namespace
+
+ReplayedSeeds::ReplayedSeeds(const Replay& replay) : replay_(replay) {
+  const TetMesh& mesh = replay.recording().mesh;
+  const Topology topology(mesh);
+  const Locator locator(mesh, topology);
+  for (const SeedAct& act : recorded().acts) at_.push_back(locator.find(act.seed.rest_mm).value_or(MaterialPoint{}));
+}
+
+LivePlan ReplayedSeeds::plan() const { return live_plan(recorded().plan); }
+
+std::optional<LiveImplant> ReplayedSeeds::news() {
+  const RecordedImplant& implant = recorded();
+  const std::size_t acts = implant.acts_until(replay_.time_s());
+  if (acts_ == acts) return std::nullopt;
+  acts_ = acts;
+  there_.clear();
+  for (std::size_t k = 0; k < acts; ++k) {
+    if (implant.acts[k].kind != SeedAct::Kind::taken_back) {
+      there_.push_back(k);
+    } else if (!there_.empty()) {
+      there_.pop_back();
+    }
+  }
+  LiveImplant now;
+  now.seeds = implant.seeds_after(acts);
+  now.planned_seeds = implant.plan.seeds.size();
+  now.now = score_of(implant.dose_after(static_cast<std::int64_t>(acts)));
+  now.planned = score_of(implant.dose_after(RecordedScore::kOfPlan));
+  return now;
+}
+
+LiveSeeds ReplayedSeeds::places() const {
+  const TetMesh& mesh = replay_.recording().mesh;
+  LiveSeeds seeds;
+  for (const std::size_t k : there_) {
+    Vec3 now = recorded().acts[k].seed.rest_mm;
+    for (Eigen::Index corner = 0; corner < 4 && at_[k].tet >= 0; ++corner) {
+      const Index node = mesh.tets[static_cast<std::size_t>(at_[k].tet)][static_cast<std::size_t>(corner)];
+      now += at_[k].weights[corner] * replay_.displacement(node);
+    }
+    seeds.now_mm.push_back(now);
+  }
+  return seeds;
+}
+
+}  // namespace stylet::serve

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "seed_journal.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace stylet::serve {
+
+namespace {
+
+/// Whether both are the same drop. A seed that is taken back and dropped again is another one.
+bool is_same_drop(const SeedHistory& a, const SeedHistory& b) {
+  return a.number == b.number && a.needle == b.needle && a.dropped_s == b.dropped_s && a.dropped_mm == b.dropped_mm;
+}
+
+RecordedScore recorded_score(const ImplantScore& score, std::int64_t acts) {
+  return {acts, static_cast<std::int64_t>(score.seeds), score.d90_Gy, score.d90_percent, score.v100_percent};
+}
+
+}  // namespace
+
+SeedJournal::News SeedJournal::news(const LiveImplant& implant, bool score_is_current, double time_s) {
+  News out;
+  std::size_t same = 0;
+  while (same < std::min(seeds_.size(), implant.seeds.size()) && is_same_drop(seeds_[same], implant.seeds[same]))
+    ++same;
+  last_s_ = std::max(last_s_, has_begun_ ? time_s : 0.0);
+  while (seeds_.size() > same) {
+    out.acts.push_back({SeedAct::Kind::taken_back, last_s_, seeds_.back()});
+    seeds_.pop_back();
+  }
+  for (std::size_t k = same; k < implant.seeds.size(); ++k) {
+    const SeedHistory& seed = implant.seeds[k];
+    // The loop may be further than the steps that have been fetched.
+    if (has_begun_) last_s_ = std::max(last_s_, seed.dropped_s);
+    out.acts.push_back({has_begun_ ? SeedAct::Kind::dropped : SeedAct::Kind::earlier, last_s_, seed});
+    seeds_.push_back(seed);
+  }
+  has_begun_ = true;
+  acts_ += static_cast<std::int64_t>(out.acts.size());
+  if (implant.planned && !has_plan_dose_) {
+    has_plan_dose_ = true;
+    out.doses.push_back(recorded_score(*implant.planned, RecordedScore::kOfPlan));
+  }
+  if (implant.now && score_is_current && dose_after_ != acts_) {
+    dose_after_ = acts_;
+    out.doses.push_back(recorded_score(*implant.now, acts_));
+  }
+  return out;
+}
+
+RecordedPlan recorded_plan(const LivePlan& plan) {
+  RecordedPlan out;
+  for (std::size_t k = 0; k < plan.needles.size(); ++k) {
+    const PlannedNeedle& needle = plan.needles[k];
+    out.needles.push_back({needle.name, needle.hole, needle.entry_mm, needle.direction, needle.depth_mm});
+    for (const PlannedSeed& seed : needle.seeds)
+      out.seeds.push_back({seed.number, k, seed.planned_mm, seed.axis, seed.drop_depth_mm});
+  }
+  out.current = plan.current;
+  out.seed_length_mm = plan.seed_length_mm;
+  out.seed_diameter_mm = plan.seed_diameter_mm;
+  out.prescription_Gy = plan.prescription_Gy;
+  out.source = plan.source;
+  return out;
+}
+
+LivePlan live_plan(const RecordedPlan& plan) {
+  LivePlan out;
+  for (const RecordedPlan::Needle& needle : plan.needles) {
+    PlannedNeedle& of = out.needles.emplace_back();
+    of.name = needle.name;
+    of.hole = needle.hole;
+    of.entry_mm = needle.entry_mm;
+    of.direction = needle.direction;
+    of.depth_mm = needle.depth_mm;
+  }
+  for (const RecordedPlan::Seed& seed : plan.seeds)
+    out.needles[seed.needle].seeds.push_back({seed.number, seed.planned_mm, seed.axis, seed.drop_depth_mm});
+  out.current = plan.current;
+  out.seed_length_mm = plan.seed_length_mm;
+  out.seed_diameter_mm = plan.seed_diameter_mm;
+  out.prescription_Gy = plan.prescription_Gy;
+  out.source = plan.source;
+  return out;
+}
+
+}  // namespace stylet::serve
