@@ -2,12 +2,12 @@
 #include "stylet/implant/implant.hpp"
 
 #include "needle_group.hpp"
-#include "seed_fate.hpp"
 #include "sim/planning.hpp"
 #include "stylet/core/parallel.hpp"
 #include "stylet/geom/centroid.hpp"
 #include "stylet/geom/topology.hpp"
 #include "stylet/implant/needle_insertion.hpp"
+#include "stylet/implant/seed_fate.hpp"
 
 #include <fmt/format.h>
 

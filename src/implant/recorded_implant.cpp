@@ -13,6 +13,8 @@ const char* to_string(SeedAct::Kind kind) {
       return "dropped";
     case SeedAct::Kind::taken_back:
       return "taken_back";
+    case SeedAct::Kind::settled:
+      return "settled";
   }
   return "";
 }
@@ -22,15 +24,25 @@ std::size_t RecordedImplant::acts_until(double time_s) const {
   return static_cast<std::size_t>(after - acts.begin());
 }
 
-std::vector<SeedHistory> RecordedImplant::seeds_after(std::size_t count) const {
-  std::vector<SeedHistory> seeds;
+std::vector<std::size_t> RecordedImplant::acts_of_seeds(std::size_t count) const {
+  std::vector<std::size_t> there;
   for (std::size_t k = 0; k < std::min(count, acts.size()); ++k) {
-    if (acts[k].kind != SeedAct::Kind::taken_back) {
-      seeds.push_back(acts[k].seed);
-    } else if (!seeds.empty()) {
-      seeds.pop_back();
+    const SeedAct& act = acts[k];
+    if (act.kind == SeedAct::Kind::taken_back) {
+      if (!there.empty()) there.pop_back();
+    } else if (act.kind == SeedAct::Kind::settled) {
+      for (std::size_t& of : there)
+        if (acts[of].seed.is_same_drop(act.seed)) of = k;
+    } else {
+      there.push_back(k);
     }
   }
+  return there;
+}
+
+std::vector<SeedHistory> RecordedImplant::seeds_after(std::size_t count) const {
+  std::vector<SeedHistory> seeds;
+  for (const std::size_t act : acts_of_seeds(count)) seeds.push_back(acts[act].seed);
   return seeds;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "seed_fate.hpp"
+#include "stylet/implant/seed_fate.hpp"
 
 #include <algorithm>
 #include <random>

@@ -3,6 +3,7 @@
 
 #include "scene.hpp"
 #include "stylet/implant/needle_insertion.hpp"
+#include "stylet/implant/seed_fate.hpp"
 
 #include <fmt/format.h>
 
@@ -44,6 +45,7 @@ Result<std::unique_ptr<ImplantDesk>> ImplantDesk::open(std::shared_ptr<const Imp
                                                        const std::string& where) {
   std::unique_ptr<ImplantDesk> desk(new ImplantDesk());
   desk->implant_ = implant;
+  desk->fate_ = model->scenario().seed;
   LivePlan& plan = desk->plan_;
   plan.seed_length_mm = implant->source.outer_length_mm;
   plan.seed_diameter_mm = implant->source.outer_diameter_mm;
@@ -118,7 +120,7 @@ Result<PlannedSeed> ImplantDesk::next_seed() const {
   return needle.seeds[dropped];
 }
 
-Result<> ImplantDesk::add(const ProbedDrop& drop) {
+Result<SeedHistory> ImplantDesk::add(const ProbedDrop& drop) {
   const Result<PlannedSeed> seed = next_seed();
   if (!seed) return seed.error();
   if (!drop.tip_in_tissue) {
@@ -138,27 +140,47 @@ Result<> ImplantDesk::add(const ProbedDrop& drop) {
   h.by(SeedCause::bend) = h.dropped_mm - vec3(drop.straight);
   h.by(SeedCause::relaxation) = -vec3(drop.lasting);
   h.by(SeedCause::motion) = h.rest_mm - h.dropped_mm - h.by(SeedCause::relaxation);
-  state_.seeds.push_back(h);
+  dropped_.push_back(h);
   seeds_have_changed();
-  return Ok{};
+  return state_.seeds.back();
 }
 
 Result<> ImplantDesk::take_back() {
-  if (state_.seeds.empty()) return input_error("the last seed", "no seed has been dropped yet", "Drop one first");
-  state_.seeds.pop_back();
+  if (dropped_.empty()) return input_error("the last seed", "no seed has been dropped yet", "Drop one first");
+  dropped_.pop_back();
   seeds_have_changed();
   return Ok{};
 }
 
 void ImplantDesk::clear() {
-  state_.seeds.clear();
+  dropped_.clear();
   seeds_have_changed();
 }
 
+/// Lets the seeds of each needle settle. A needle's seeds have been dropped from its tip on, and each of them draws the
+/// same random numbers however many follow, so that only a strand moves seeds that were there before.
+void ImplantDesk::settle() {
+  state_.seeds = dropped_;
+  for (std::size_t needle = 0; needle < plan_.needles.size(); ++needle) {
+    std::vector<SeedHistory> own;
+    for (const SeedHistory& seed : dropped_) {
+      if (seed.needle == needle) own.push_back(seed);
+    }
+    if (own.empty()) continue;
+    settle_seeds(own, fate_, needle);
+    auto settled = own.begin();
+    for (SeedHistory& seed : state_.seeds) {
+      if (seed.needle == needle) seed = *settled++;
+    }
+  }
+}
+
 void ImplantDesk::seeds_have_changed() {
+  settle();
   std::vector<PlacedSource> placed;
-  for (const SeedHistory& seed : state_.seeds)
-    placed.push_back({seed.rest_mm, seed.axis, implant_->plan.sources[seed.number].strength_U});
+  for (const SeedHistory& seed : state_.seeds) {
+    if (!seed.lost) placed.push_back({seed.rest_mm, seed.axis, implant_->plan.sources[seed.number].strength_U});
+  }
   dose_version_ = dose_->set(std::move(placed));
   state_.is_computing = true;
   state_changed_ = true;

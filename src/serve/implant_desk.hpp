@@ -38,9 +38,11 @@ class ImplantDesk {
   [[nodiscard]] Result<PlannedSeed> next_seed() const;
   [[nodiscard]] double seed_length_mm() const { return plan_.seed_length_mm; }
 
-  /// Adds the seed that the present needle has left; SeedHistory::in_tissue says whether the point of the tissue was
-  /// found. Error: the tip was not in the tissue, and nothing was dropped.
-  Result<> add(const ProbedDrop& drop);
+  /// Adds the seed that the present needle has left. It jumps, keeps to its strand or is lost as `[seed]` of the
+  /// scenario wants (settle_seeds()), with the same random numbers as in stylet implant.
+  /// @return the seed; SeedHistory::in_tissue says whether the point of the tissue was found
+  /// Error: the tip was not in the tissue, and nothing was dropped.
+  Result<SeedHistory> add(const ProbedDrop& drop);
   /// Takes the last seed back. Error: there is none.
   Result<> take_back();
   void clear();
@@ -67,10 +69,13 @@ class ImplantDesk {
  private:
   ImplantDesk() = default;
   void seeds_have_changed();
+  void settle();
 
   std::shared_ptr<const ImplantCase> implant_;
   std::vector<InsertionPlan> insertions_;
+  Scenario::Seed fate_;  ///< what becomes of seeds after their drop
   LivePlan plan_;
+  std::vector<SeedHistory> dropped_;  ///< as dropped, before they settle; in the order of the drops
   LiveImplant state_;
   bool plan_changed_ = true;
   bool state_changed_ = true;

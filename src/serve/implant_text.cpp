@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace stylet::serve {
@@ -51,7 +52,8 @@ const char* word_of(SeedCause cause) { return cause == SeedCause::aim ? "hand" :
 
 ImplantJson seed_row(const SeedHistory& seed) {
   ImplantJson why;
-  for (const SeedCause cause : {SeedCause::aim, SeedCause::bend, SeedCause::motion, SeedCause::relaxation})
+  for (const SeedCause cause : {SeedCause::aim, SeedCause::bend, SeedCause::motion, SeedCause::relaxation,
+                                SeedCause::strand, SeedCause::release})
     why[word_of(cause)] = place_json(seed.by(cause));
   return {{"number", seed.number},
           {"needle", seed.needle},
@@ -61,6 +63,7 @@ ImplantJson seed_row(const SeedHistory& seed) {
           {"axis", place_json(seed.axis)},
           {"error_mm", seed.error_mm().norm()},
           {"in_tissue", seed.in_tissue},
+          {"lost", seed.lost},
           {"why", why}};
 }
 
@@ -78,7 +81,8 @@ ImplantJson error_json(std::span<const SeedHistory> seeds) {
 ImplantJson causes_json(std::span<const SeedHistory> seeds) {
   ImplantJson rows = ImplantJson::array();
   for (const CauseOfErrors& of : causes_of_errors(seeds)) {
-    if (of.cause == SeedCause::strand || of.cause == SeedCause::release) continue;  // the live page has none
+    const bool is_of_fate = of.cause == SeedCause::strand || of.cause == SeedCause::release;
+    if (is_of_fate && of.mean_mm == 0.0) continue;  // the scenario has no strands, or no jumps
     rows.push_back({{"cause", word_of(of.cause)},
                     {"mean_mm", number_json(of.mean_mm)},
                     {"mean_xyz_mm", place_json(of.mean_vector_mm)}});
@@ -121,13 +125,15 @@ std::string plan_text(const LivePlan& plan) {
 std::string implant_text(const LiveImplant& implant) {
   ImplantJson seeds = ImplantJson::array();
   for (const SeedHistory& seed : implant.seeds) seeds.push_back(seed_row(seed));
-  return text_of_implant({{"planned_seeds", implant.planned_seeds},
-                          {"seeds", seeds},
-                          {"computing", implant.is_computing},
-                          {"now", score_json(implant.now)},
-                          {"planned", score_json(implant.planned)},
-                          {"error", error_json(implant.seeds)},
-                          {"why", implant.seeds.empty() ? ImplantJson::array() : causes_json(implant.seeds)}});
+  return text_of_implant(
+      {{"planned_seeds", implant.planned_seeds},
+       {"seeds", seeds},
+       {"computing", implant.is_computing},
+       {"now", score_json(implant.now)},
+       {"planned", score_json(implant.planned)},
+       {"error", error_json(implant.seeds)},
+       {"lost", std::count_if(implant.seeds.begin(), implant.seeds.end(), [](const auto& s) { return s.lost; })},
+       {"why", implant.seeds.empty() ? ImplantJson::array() : causes_json(implant.seeds)}});
 }
 
 std::string seeds_text(const LiveSeeds& seeds) {

@@ -35,14 +35,7 @@ std::optional<LiveImplant> ReplayedSeeds::news() {
   const std::size_t acts = implant.acts_until(replay_.time_s());
   if (acts_ == acts) return std::nullopt;
   acts_ = acts;
-  there_.clear();
-  for (std::size_t k = 0; k < acts; ++k) {
-    if (implant.acts[k].kind != SeedAct::Kind::taken_back) {
-      there_.push_back(k);
-    } else if (!there_.empty()) {
-      there_.pop_back();
-    }
-  }
+  there_ = implant.acts_of_seeds(acts);
   LiveImplant now;
   now.seeds = implant.seeds_after(acts);
   now.planned_seeds = implant.plan.seeds.size();

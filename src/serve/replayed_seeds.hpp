@@ -31,7 +31,7 @@ class ReplayedSeeds {
   const Replay& replay_;
   std::vector<MaterialPoint> at_;    ///< of the seed of each act, at rest; outside of the mesh without an element
   std::optional<std::size_t> acts_;  ///< number of acts at the last news()
-  std::vector<std::size_t> there_;   ///< the acts that have brought the seeds that are there now
+  std::vector<std::size_t> there_;   ///< the acts that say where the seeds that are there now rest
 };
 
 }  // namespace stylet::serve

@@ -8,11 +8,6 @@ namespace stylet::serve {
 
 namespace {
 
-/// Whether both are the same drop. A seed that is taken back and dropped again is another one.
-bool is_same_drop(const SeedHistory& a, const SeedHistory& b) {
-  return a.number == b.number && a.needle == b.needle && a.dropped_s == b.dropped_s && a.dropped_mm == b.dropped_mm;
-}
-
 RecordedScore recorded_score(const ImplantScore& score, std::int64_t acts) {
   return {acts, static_cast<std::int64_t>(score.seeds), score.d90_Gy, score.d90_percent, score.v100_percent};
 }
@@ -21,13 +16,19 @@ RecordedScore recorded_score(const ImplantScore& score, std::int64_t acts) {
 
 SeedJournal::News SeedJournal::news(const LiveImplant& implant, bool score_is_current, double time_s) {
   News out;
+  std::vector<SeedAct> settled;
   std::size_t same = 0;
-  while (same < std::min(seeds_.size(), implant.seeds.size()) && is_same_drop(seeds_[same], implant.seeds[same]))
-    ++same;
+  while (same < std::min(seeds_.size(), implant.seeds.size()) && seeds_[same].is_same_drop(implant.seeds[same])) ++same;
   last_s_ = std::max(last_s_, has_begun_ ? time_s : 0.0);
   while (seeds_.size() > same) {
     out.acts.push_back({SeedAct::Kind::taken_back, last_s_, seeds_.back()});
     seeds_.pop_back();
+  }
+  for (std::size_t k = 0; k < same; ++k) {
+    const SeedHistory& seed = implant.seeds[k];
+    if (seeds_[k].rest_mm == seed.rest_mm) continue;
+    seeds_[k] = seed;
+    settled.push_back({SeedAct::Kind::settled, 0.0, seed});
   }
   for (std::size_t k = same; k < implant.seeds.size(); ++k) {
     const SeedHistory& seed = implant.seeds[k];
@@ -37,6 +38,10 @@ SeedJournal::News SeedJournal::news(const LiveImplant& implant, bool score_is_cu
     seeds_.push_back(seed);
   }
   has_begun_ = true;
+  for (SeedAct& act : settled) {
+    act.time_s = last_s_;
+    out.acts.push_back(act);
+  }
   acts_ += static_cast<std::int64_t>(out.acts.size());
   if (implant.planned && !has_plan_dose_) {
     has_plan_dose_ = true;

@@ -9,7 +9,7 @@
 namespace stylet::serve {
 
 /// Turns what has been carried out of a plan into rows of a recording: the seeds that were there when it began, then
-/// each drop, each seed that was taken back, and the dose after them.
+/// each drop, each seed that was taken back or that a strand has moved, and the dose after them.
 class SeedJournal {
  public:
   struct News {

@@ -452,9 +452,17 @@ void Session::Parts::keep_needle() {
 void Session::Parts::take_drop() {
   const auto drop = live->seeds().take_drop();
   if (!drop) return;
-  if (const Result<> added = implant->add(*drop); !added) {
+  const Result<SeedHistory> added = implant->add(*drop);
+  if (!added) {
     audience.refuse(dropper, {added.error().where + ": " + added.error().what, added.error().cure});
     return;
+  }
+  if (added->lost) {
+    audience.refuse(
+        dropper,
+        {fmt::format("Seed {} of needle {} is lost: it has left the patient and gives no dose.",
+                     implant->seeds_of_current().size(), implant->plan().needles[added->needle].name),
+         fmt::format("The scenario loses {} % of the seeds (seed.loss_percent).", planned.scenario.seed.loss_percent)});
   }
   live->seeds().set(implant->rest_mm(), implant->seeds_of_current());
   if (drop->found) return;

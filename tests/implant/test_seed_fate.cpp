@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Strands, jumps and losses.
-#include "implant/seed_fate.hpp"
+#include "stylet/implant/seed_fate.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,6 +7,7 @@
 #include "stylet/geom/topology.hpp"
 #include "stylet/implant/needle_insertion.hpp"
 
+#include <functional>
 #include <memory>
 
 namespace stylet::test {
@@ -40,9 +41,11 @@ inline std::shared_ptr<const serve::ImplantCase> small_implant(double step_mm = 
 }
 
 /// A server whose case has this plan. The model has the plan's first needle.
-inline serve::CaseSource implant_case() {
-  return {"implant", [](const Progress& progress) -> Result<serve::LoadedCase> {
+/// @param change of the scenario
+inline serve::CaseSource implant_case(const std::function<void(Scenario&)>& change = {}) {
+  return {"implant", [change](const Progress& progress) -> Result<serve::LoadedCase> {
             Scenario scenario = box_scenario();
+            if (change) change(scenario);
             scenario.insertions.clear();
             scenario.plan.file = "plan.csv";
             const auto implant = small_implant();

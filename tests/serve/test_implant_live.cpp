@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // An implant carried out over the live protocol.
 #include "small_implant.hpp"
+#include "stylet/implant/seed_fate.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,10 +12,13 @@ namespace {
 
 /// A page that holds the needle of a case with a plan.
 struct Implanting {
-  Serving serving{[](serve::ServerSettings& s) { s.session.cases = {implant_case(), box_case("without")}; }};
+  Serving serving;
   std::unique_ptr<LiveClient> page = ready_client(serving);
 
-  Implanting() {
+  explicit Implanting(const std::function<void(Scenario&)>& change = {})
+      : serving([&](serve::ServerSettings& s) {
+          s.session.cases = {implant_case(change), box_case("without")};
+        }) {
     page->command(R"({"do":"take"})");
     EXPECT_TRUE(page->until([&] { return page->status.value("you_hold", false) && page->plan.contains("needles"); }));
   }
@@ -199,4 +203,70 @@ TEST(LiveImplant, a_replay_has_the_seeds_of_each_moment_and_leaves_the_live_ones
            page.implant["now"].contains("goals") && !page.implant["now"]["goals"].empty();
   }));
   EXPECT_EQ(page.implant["seeds"], live_seeds);
+}
+
+TEST(LiveImplant, seeds_jump_at_their_release_by_the_numbers_of_stylet_implant) {
+  const Scenario::Seed choice{.release_mm = 0.5, .release_sd_mm = 2.0, .random = 7};
+  Implanting at([&](Scenario& scenario) { scenario.seed = choice; });
+  LiveClient& page = *at.page;
+  std::vector<SeedHistory> expected(3);
+  settle_seeds(expected, choice, 0);
+  const auto jump = [&](std::size_t seed) {
+    const auto& of = page.implant["seeds"][seed];
+    double along = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+      along += of["axis"][axis].get<double>() * of["why"]["release"][axis].get<double>();
+    return along;
+  };
+  for (std::size_t seed = 0; seed < 3; ++seed) {
+    ASSERT_TRUE(at.go_to(at.drop_depth(0, seed)));
+    ASSERT_TRUE(at.drop());
+    EXPECT_NEAR(jump(seed), expected[seed].by(SeedCause::release).z(), 0.01);
+  }
+  EXPECT_NEAR(jump(0), expected[0].by(SeedCause::release).z(), 0.01) << "a later seed does not change it";
+  // Taken back and dropped again, the seed jumps by the same number.
+  page.command(R"({"do":"undo"})");
+  ASSERT_TRUE(page.until([&] { return at.dropped() == 2; }));
+  ASSERT_TRUE(at.drop());
+  EXPECT_NEAR(jump(2), expected[2].by(SeedCause::release).z(), 0.01);
+  bool is_said = false;
+  for (const auto& why : page.implant["why"]) is_said = is_said || (why["cause"] == "release" && why["mean_mm"] > 0.0);
+  EXPECT_TRUE(is_said) << page.implant["why"];
+}
+
+TEST(LiveImplant, a_strand_keeps_its_spacing_and_a_recording_has_it) {
+  Implanting at([](Scenario& scenario) { scenario.seed.stranded = true; });
+  LiveClient& page = *at.page;
+  for (const double beside_mm : {0.0, 2.0, -1.0}) {
+    ASSERT_TRUE(at.go_to(at.drop_depth(0, at.dropped()) + beside_mm));
+    ASSERT_TRUE(at.drop());
+  }
+  const auto rest = [&](std::size_t seed) {
+    const auto& x = page.implant["seeds"][seed]["rest_mm"];
+    return Vec3(x[0], x[1], x[2]);
+  };
+  const auto planned = [&](std::size_t seed) {
+    const auto& x = page.implant["seeds"][seed]["planned_mm"];
+    return Vec3(x[0], x[1], x[2]);
+  };
+  for (std::size_t seed = 1; seed < 3; ++seed)
+    EXPECT_NEAR((rest(seed) - rest(seed - 1)).norm(), (planned(seed) - planned(seed - 1)).norm(), 0.15);
+  ASSERT_TRUE(page.until([&, until = page.time_s + 1.0] { return page.time_s > until; }));
+  const auto live = page.implant["seeds"];
+  page.command(R"({"do":"replay","name":")" + page.status["recording"]["name"].get<std::string>() + R"("})");
+  ASSERT_TRUE(page.until([&] { return page.status.value("mode", "") == "replay"; }));
+  page.command(R"({"do":"seek","time_s":1000})");
+  ASSERT_TRUE(page.until([&] { return at.dropped() == 3; }));
+  EXPECT_EQ(page.implant["seeds"], live) << "also those that the strand has moved";
+}
+
+TEST(LiveImplant, a_lost_seed_is_said_in_words_and_gives_no_dose) {
+  Implanting at([](Scenario& scenario) { scenario.seed.loss_percent = 100.0; });
+  LiveClient& page = *at.page;
+  ASSERT_TRUE(at.go_to(at.drop_depth(0, 0)));
+  ASSERT_TRUE(at.drop());
+  EXPECT_TRUE(page.implant["seeds"][0]["lost"]);
+  ASSERT_TRUE(page.until([&] { return at.is_computed() && !page.notices.empty(); }));
+  EXPECT_EQ(page.implant["now"]["d90_Gy"], 0.0);
+  EXPECT_NE(page.notices.back()["text"].get<std::string>().find("Seed 1 of needle left is lost"), std::string::npos);
 }

@@ -38,15 +38,16 @@ struct RecordedPlan {
 /// One change of the seeds in the tissue, at a moment of a recording.
 struct SeedAct {
   enum class Kind : std::int8_t {
-    earlier,    ///< an earlier needle had dropped the seed before the recording began
-    dropped,    ///< the needle of the recording dropped it
-    taken_back  ///< the seed that was added last was taken out again
+    earlier,     ///< an earlier needle had dropped the seed before the recording began
+    dropped,     ///< the needle of the recording dropped it
+    taken_back,  ///< the seed that was added last was taken out again
+    settled      ///< the seed rests elsewhere than when it was dropped, because its strand has grown or become shorter
   };
   Kind kind = Kind::dropped;
   double time_s = 0.0;  ///< [s] simulated time of the recording
   SeedHistory seed;     ///< SeedHistory::needle is a number in RecordedPlan::needles
 };
-/// "earlier", "dropped", "taken_back"
+/// "earlier", "dropped", "taken_back", "settled"
 const char* to_string(SeedAct::Kind kind);
 
 /// The dose of the target after some acts, as it was computed when they happened.
@@ -67,7 +68,10 @@ struct RecordedImplant {
 
   /// Number of acts up to a moment, this moment included.
   [[nodiscard]] std::size_t acts_until(double time_s) const;
-  /// The seeds in the tissue after the first `count` acts, in the order in which they were dropped.
+  /// The seeds in the tissue after the first `count` acts, in the order in which they were dropped: for each the number
+  /// of the act that says where it rests.
+  [[nodiscard]] std::vector<std::size_t> acts_of_seeds(std::size_t count) const;
+  /// These seeds.
   [[nodiscard]] std::vector<SeedHistory> seeds_after(std::size_t count) const;
   /// The dose after `acts` acts, or of the plan; empty if it was not computed before the next act.
   [[nodiscard]] std::optional<RecordedScore> dose_after(std::int64_t acts) const;

@@ -50,6 +50,11 @@ struct SeedHistory {
   std::array<Vec3, kAllCauses> cause_mm{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero(),
                                         Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
 
+  /// Whether both are the same drop, wherever they rest. A seed that is taken back and dropped again is another one.
+  [[nodiscard]] bool is_same_drop(const SeedHistory& other) const {
+    return number == other.number && needle == other.needle && dropped_s == other.dropped_s &&
+           dropped_mm == other.dropped_mm;
+  }
   [[nodiscard]] Vec3 error_mm() const { return rest_mm - planned_mm; }
   [[nodiscard]] Vec3& by(SeedCause cause) { return cause_mm[static_cast<std::size_t>(cause)]; }
   [[nodiscard]] const Vec3& by(SeedCause cause) const { return cause_mm[static_cast<std::size_t>(cause)]; }

@@ -153,7 +153,7 @@ std::optional<RecordedImplant> implant_of(const StoredSeeds& stored, const std::
       said(&EndRow::acts), "/implant/acts");
   for (std::size_t k = 0; k < acts; ++k) {
     const ActRow& row = stored.acts[k];
-    demand(row.kind >= 0 && row.kind <= static_cast<std::int8_t>(SeedAct::Kind::taken_back), "/implant/acts: kind");
+    demand(row.kind >= 0 && row.kind <= static_cast<std::int8_t>(SeedAct::Kind::settled), "/implant/acts: kind");
     demand(row.number >= 1 && row.needle >= 0 && static_cast<std::uint64_t>(row.needle) < stored.needles.size(),
            "/implant/acts: number, needle");
     out.acts.push_back(from_row(row));

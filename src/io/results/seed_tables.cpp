@@ -46,7 +46,7 @@ h5::Handle plan_seed_type() {
 
 h5::Handle act_row_type() {
   h5::Handle kind(h5::check(H5Tenum_create(H5T_NATIVE_INT8), "create type"), H5Tclose);
-  for (std::int8_t value = 0; value <= static_cast<std::int8_t>(SeedAct::Kind::taken_back); ++value)
+  for (std::int8_t value = 0; value <= static_cast<std::int8_t>(SeedAct::Kind::settled); ++value)
     h5::check(H5Tenum_insert(kind, to_string(static_cast<SeedAct::Kind>(value)), &value), "create type");
   h5::Handle type = h5::compound_type(sizeof(ActRow));
   const h5::Handle vector = h5::array_type(H5T_NATIVE_DOUBLE, 3);

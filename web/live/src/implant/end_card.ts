@@ -4,12 +4,14 @@
 import { button, element } from '../../../shared/dom';
 import { dialog } from '../controls/dialogs';
 import type { Session } from '../session';
-import { isFinished, type Goal, type Implant, type Score } from './implant';
+import { isFinished, lostSeeds, type Goal, type Implant, type Score } from './implant';
 
 const REASONS: Record<string, [string, string]> = {
   hand: ['Your hand', 'where a straight needle held as you held it would have left the seed, less its planned place'],
   'needle bend': ['Needle bend', 'the needle was bent when it left the seed'],
   'tissue motion': ['Tissue motion', 'the needle had displaced the tissue, which has gone back since and taken the seed along'],
+  strand: ['Strand', 'the strand holds the seed at its distance from the others'],
+  release: ['Release', 'the seed jumped along its track when it was let go'],
   'tissue relaxation': ['Tissue relaxation', 'the tissue had crept under the needle, which goes back slowly'],
 };
 const AXES: [string, string, string][] = [['Left–right', 'left', 'right'], ['Anterior–posterior', 'posterior', 'anterior'], ['Superior–inferior', 'superior', 'inferior']];
@@ -110,6 +112,11 @@ export class EndCard {
     close.classList.add('primary');
     foot.append(element('strong', 'not-medical', 'Not a medical device. A simulation for research and teaching.'), again, close);
     this.body.replaceChildren(lead, columns, foot);
+    const lost = lostSeeds(implant);
+    if (lost > 0) {
+      lead.append(element('b', '', ` ${lost === 1 ? 'One seed is lost' : `${lost} seeds are lost`}:`),
+        ` ${lost === 1 ? 'it has' : 'they have'} left the patient and ${lost === 1 ? 'gives' : 'give'} no dose.`);
+    }
     if (seeds.some((seed) => !seed.in_tissue)) {
       lead.append(element('span', 'cure', ' Seeds that were dropped where the motion of the tissue is not known count as resting there.'));
     }

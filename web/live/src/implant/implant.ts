@@ -18,7 +18,7 @@ export interface Score {
 }
 export interface DroppedSeed {
   number: number; needle: number; planned_mm: Place; dropped_mm: Place; rest_mm: Place; axis: Place; error_mm: number;
-  in_tissue: boolean; why: Record<string, Place>;
+  in_tissue: boolean; lost?: boolean; why: Record<string, Place>;
 }
 export interface Errors { seeds: number; mean_mm: number; p95_mm: number; largest_mm: number; axes_mm: { mean: number; sd: number }[] }
 export interface Cause { cause: string; mean_mm: number | null; mean_xyz_mm: Place }
@@ -90,14 +90,19 @@ export function replayWords(plan: Plan, implant: Implant | null): string {
 /** The mean motion [mm] of the dropped seeds from where they rest; zero without seeds. */
 export function meanMotion(implant: Implant | null, seeds: Seeds | null): Place {
   const sum: Place = [0, 0, 0];
-  const count = Math.min(implant?.seeds.length ?? 0, seeds?.now_mm.length ?? 0);
-  for (let i = 0; i < count; i++) {
-    for (let k = 0; k < 3; k++) sum[k] += (seeds!.now_mm[i][k] - implant!.seeds[i].rest_mm[k]) / count;
+  const there = (implant?.seeds ?? []).flatMap((seed, i) => (seed.lost || !seeds?.now_mm[i] ? [] : [i]));
+  for (const i of there) {
+    for (let k = 0; k < 3; k++) sum[k] += (seeds!.now_mm[i][k] - implant!.seeds[i].rest_mm[k]) / there.length;
   }
   return sum;
 }
 
-/** Where the dropped seeds are now; those whose place has not been told yet where they rest. */
-export function placesNow(implant: Implant | null, seeds: Seeds | null): Place[] {
-  return implant?.seeds.map((seed, i) => seeds?.now_mm[i] ?? seed.rest_mm) ?? [];
+/** Where the dropped seeds are now; those whose place has not been told yet where they rest. A lost seed is nowhere. */
+export function placesNow(implant: Implant | null, seeds: Seeds | null): (Place | null)[] {
+  return implant?.seeds.map((seed, i) => (seed.lost ? null : seeds?.now_mm[i] ?? seed.rest_mm)) ?? [];
+}
+
+/** How many of the dropped seeds have left the patient. */
+export function lostSeeds(implant: Implant | null): number {
+  return implant?.seeds.filter((seed) => seed.lost).length ?? 0;
 }

@@ -4,7 +4,7 @@ import { button, element } from '../../../shared/dom';
 import type { HandControl } from '../hand';
 import { onRepaintEvery } from '../repaint';
 import type { Session } from '../session';
-import { droppedOf, isFinished, nextNeedle, nextSeed, replayWords, whatToDo, type Plan } from './implant';
+import { droppedOf, isFinished, lostSeeds, nextNeedle, nextSeed, replayWords, whatToDo, type Plan } from './implant';
 
 const WRITE_EVERY_MS = 60;
 
@@ -154,7 +154,9 @@ export class ImplantPanel {
       relative && (now?.d90_percent ?? 0) >= 100);
     this.v100.set(number(now?.v100_percent, 1), '%',
       `Share of the gland that receives the prescribed dose${planned?.v100_percent != null ? `; the plan reaches ${planned.v100_percent.toFixed(1)} %` : ''}`, (now?.v100_percent ?? 0) >= 95);
-    this.count.set(String(implant?.seeds.length ?? 0), `of ${implant?.planned_seeds ?? 0}`, 'Seeds dropped so far, and seeds of the plan');
+    const lost = lostSeeds(implant);
+    this.count.set(String(implant?.seeds.length ?? 0), `of ${implant?.planned_seeds ?? 0}${lost > 0 ? `, ${lost} lost` : ''}`,
+      `Seeds dropped so far, and seeds of the plan${lost > 0 ? `; ${lost} of them ${lost === 1 ? 'has' : 'have'} left the patient` : ''}`);
     this.error.set(some && error ? error.mean_mm.toFixed(1) : '–', 'mm', 'Mean distance of the dropped seeds from their planned places, in the tissue at rest');
   }
 

@@ -88,7 +88,7 @@ export class SeedMarks {
     }
     context.globalAlpha = 1;
     placesNow(implant, seeds).forEach((at, i) => {
-      if (!isNear(at)) return;
+      if (!at || !isNear(at)) return;
       path(at, implant!.seeds[i].axis, 0.6);
       context.fillStyle = SEED;
       context.fill();

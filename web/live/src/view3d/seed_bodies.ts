@@ -56,7 +56,7 @@ export class SeedBodies {
     const now = placesNow(implant, seeds);
     const lines = new Float32Array(6 * now.length);
     for (let i = 0; i < all.length; i++) this.place(this.dropped!, i, now[i] ?? null, implant?.seeds[i]?.axis ?? [0, 0, 1], 1);
-    now.forEach((at, i) => lines.set([...implant!.seeds[i].planned_mm, ...at], 6 * i));
+    now.forEach((at, i) => at && lines.set([...implant!.seeds[i].planned_mm, ...at], 6 * i));
     this.errors.geometry.setAttribute('position', new THREE.BufferAttribute(lines, 3));
     this.planned!.instanceMatrix.needsUpdate = this.dropped!.instanceMatrix.needsUpdate = true;
   }
