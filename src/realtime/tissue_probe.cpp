@@ -19,10 +19,17 @@ std::optional<Insertion::PointDisplacement> displacement_of(Simulation& simulati
 }  // namespace
 
 std::uint32_t TissueProbe::order_drop(double beyond_tip_mm) {
-  ++wanted_.drop;
-  wanted_.beyond_tip_mm = beyond_tip_mm;
+  const double behind = -beyond_tip_mm;
+  return order_train(std::span(&behind, 1), beyond_tip_mm);
+}
+
+std::uint32_t TissueProbe::order_train(std::span<const double> behind_tip_mm, double half_length_mm) {
+  ++wanted_.number;
+  wanted_.seeds = std::min(behind_tip_mm.size(), kTrain);
+  for (std::size_t k = 0; k < wanted_.seeds; ++k) wanted_.beyond_tip_mm[k] = -behind_tip_mm[k];
+  wanted_.half_length_mm = half_length_mm;
   order_.write(wanted_);
-  return wanted_.drop;
+  return wanted_.number;
 }
 
 std::uint32_t TissueProbe::watch(std::span<const Vec3> points) {
@@ -33,30 +40,51 @@ std::uint32_t TissueProbe::watch(std::span<const Vec3> points) {
   return wanted_.version;
 }
 
-void TissueProbe::begin_drop(const Simulation& simulation) {
+/// Notes where the seeds of the train are.
+void TissueProbe::begin_train(const Simulation& simulation) {
+  const Order& order = order_.value();
   const Step& step = simulation.last_step();
   const Needle& needle = simulation.insertion().needle();
-  const double beyond = order_.value().beyond_tip_mm;
-  const Vec3 axis = needle.tangent(needle.length());
-  ProbedDrop& drop = now_.drop;
-  drop = {};
-  drop.number = order_.value().drop;
-  drop.tip_in_tissue = step.inserted_mm > 0.0 && step.tip_state != TipState::air && step.tip_state != TipState::exited;
-  drop.place = plain(needle.point(needle.length()) + beyond * axis);
-  drop.straight = plain(step.base.origin + (needle.length() + beyond) * (step.base.rotation * Vec3::UnitZ()));
-  drop.axis = plain(axis);
-  drop.rest = drop.place;
+  const double length = needle.length();
+  const bool in_tissue =
+      step.inserted_mm > 0.0 && step.tip_state != TipState::air && step.tip_state != TipState::exited;
+  search_.reset();
+  left_ = in_tissue ? 0 : order.seeds;
+  now_.order = order.number;
+  now_.drop_count = order.seeds;
+  for (std::size_t k = 0; k < order.seeds; ++k) {
+    const double beyond = order.beyond_tip_mm[k];
+    const double arc = std::clamp(length + beyond, 0.0, length);
+    const Vec3 axis = needle.tangent(arc);
+    ProbedDrop& drop = now_.drops[k];
+    drop = {};
+    drop.tip_in_tissue = in_tissue;
+    drop.place = plain(needle.point(arc) + (length + beyond - arc) * axis);
+    drop.straight = plain(step.base.origin + (length + beyond) * (step.base.rotation * Vec3::UnitZ()));
+    drop.axis = plain(axis);
+    drop.rest = drop.place;
+    drop.is_done = !in_tissue;
+  }
+}
+
+/// Begins the search for the next seed of the train if the tip has been drawn back beyond its end.
+void TissueProbe::leave_next(const Simulation& simulation) {
+  constexpr double rounding_mm = 1e-9;
+  if (left_ >= now_.drop_count) return;
+  ProbedDrop& drop = now_.drops[left_];
+  const Needle& needle = simulation.insertion().needle();
+  const double beyond = (vec3(drop.place) - needle.point(needle.length())).dot(vec3(drop.axis));
+  if (beyond < order_.value().half_length_mm - rounding_mm) return;
+  const Step& step = simulation.last_step();
   drop.base_depth_mm = step.base_depth_mm;
   drop.time_s = step.time_s;
-  drop.is_done = !drop.tip_in_tissue;
-  search_.reset();
-  if (drop.tip_in_tissue) search_.emplace(vec3(drop.place), kExactDrop_mm, kMostDropIterations);
+  search_.emplace(vec3(drop.place), kExactDrop_mm, kMostDropIterations);
 }
 
 void TissueProbe::search(Simulation& simulation) {
   for (int k = 0; k < kEachStep && !search_->is_done(); ++k) search_->add(displacement_of(simulation, search_->x()));
   if (!search_->is_done()) return;
-  ProbedDrop& drop = now_.drop;
+  ProbedDrop& drop = now_.drops[left_++];
   drop.is_done = true;
   if (const auto& found = search_->found()) {
     drop.found = true;
@@ -88,10 +116,11 @@ void TissueProbe::serve(Simulation& simulation) noexcept {
     next_ = 0;
     is_new = true;
   }
-  if (order.drop != now_.drop.number) {
-    begin_drop(simulation);
+  if (order.number != now_.order) {
+    begin_train(simulation);
     is_new = true;
   }
+  if (!search_) leave_next(simulation);
   if (search_) {
     search(simulation);
     is_new = is_new || !search_;

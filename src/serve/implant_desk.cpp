@@ -52,6 +52,7 @@ Result<std::unique_ptr<ImplantDesk>> ImplantDesk::open(std::shared_ptr<const Imp
   plan.prescription_Gy =
       implant->options.prescription_Gy > 0.0 ? implant->options.prescription_Gy : implant->plan.prescription_Gy;
   plan.source = implant->source.name;
+  plan.technique = model->scenario().procedure.technique;
   std::vector<std::string> names;
   for (const NeedleLoad& load : implant->needles) {
     Result<InsertionPlan> insertion = needle_insertion(load, model->scenario(), model->locator(), where);
@@ -63,8 +64,8 @@ Result<std::unique_ptr<ImplantDesk>> ImplantDesk::open(std::shared_ptr<const Imp
     needle.direction = load.direction;
     needle.depth_mm = insertion->depth_mm;
     for (const LoadedSeed& seed : load.seeds) {
-      needle.seeds.push_back(
-          {seed.number, seed.planned_mm, seed.axis, drop_depth_mm(needle.depth_mm, seed, plan.seed_length_mm)});
+      needle.seeds.push_back({seed.number, seed.planned_mm, seed.axis,
+                              drop_depth_mm(needle.depth_mm, seed, plan.seed_length_mm), seed.behind_tip_mm});
     }
     desk->state_.planned_seeds += load.seeds.size();
     desk->insertions_.push_back(*std::move(insertion));
@@ -96,6 +97,20 @@ std::optional<std::size_t> ImplantDesk::needle_of(const Model& model) const {
 void ImplantDesk::set_current(std::optional<std::size_t> needle) {
   plan_.current = needle ? static_cast<int>(*needle) : -1;
   plan_changed_ = true;
+}
+
+void ImplantDesk::set_train(std::optional<double> from_mm) {
+  state_changed_ = state_changed_ || from_mm != state_.train_from_mm;
+  state_.train_from_mm = from_mm;
+}
+
+std::vector<double> ImplantDesk::train_mm() const {
+  std::vector<double> behind;
+  if (plan_.current < 0) return behind;
+  const PlannedNeedle& needle = plan_.needles[static_cast<std::size_t>(plan_.current)];
+  for (std::size_t k = seeds_of_current().size(); k < needle.seeds.size(); ++k)
+    behind.push_back(needle.seeds[k].behind_tip_mm);
+  return behind;
 }
 
 std::vector<std::size_t> ImplantDesk::seeds_of_current() const {
@@ -147,7 +162,9 @@ Result<SeedHistory> ImplantDesk::add(const ProbedDrop& drop) {
 
 Result<> ImplantDesk::take_back() {
   if (dropped_.empty()) return input_error("the last seed", "no seed has been dropped yet", "Drop one first");
+  const std::size_t needle = dropped_.back().needle;
   dropped_.pop_back();
+  while (is_preloaded() && !dropped_.empty() && dropped_.back().needle == needle) dropped_.pop_back();
   seeds_have_changed();
   return Ok{};
 }

@@ -34,6 +34,13 @@ class ImplantDesk {
 
   /// Sets the needle that is in front of the patient; empty: one beside the plan.
   void set_current(std::optional<std::size_t> needle);
+  /// Whether a needle is drawn back over its train of seeds instead of stopping at each.
+  [[nodiscard]] bool is_preloaded() const { return plan_.technique == SeedTechnique::preloaded; }
+  /// Distances [mm] of the seeds that the present needle still has behind its tip, from the tip on.
+  [[nodiscard]] std::vector<double> train_mm() const;
+  /// Says that a train is being left. @param from_mm depth of the base at which it was begun; empty: it has ended
+  void set_train(std::optional<double> from_mm);
+
   /// The seed that the present needle drops next. Errors: the needle is beside the plan, or it is empty.
   [[nodiscard]] Result<PlannedSeed> next_seed() const;
   [[nodiscard]] double seed_length_mm() const { return plan_.seed_length_mm; }
@@ -43,7 +50,7 @@ class ImplantDesk {
   /// @return the seed; SeedHistory::in_tissue says whether the point of the tissue was found
   /// Error: the tip was not in the tissue, and nothing was dropped.
   Result<SeedHistory> add(const ProbedDrop& drop);
-  /// Takes the last seed back. Error: there is none.
+  /// Takes the last seed back, of a preloaded needle all its seeds: its train is loaded again. Error: there is none.
   Result<> take_back();
   void clear();
 

@@ -119,7 +119,8 @@ std::string plan_text(const LivePlan& plan) {
                           {"seed_length_mm", plan.seed_length_mm},
                           {"seed_diameter_mm", plan.seed_diameter_mm},
                           {"prescription_Gy", plan.prescription_Gy},
-                          {"source", plan.source}});
+                          {"source", plan.source},
+                          {"technique", plan.technique == SeedTechnique::preloaded ? "preloaded" : "pushed"}});
 }
 
 std::string implant_text(const LiveImplant& implant) {
@@ -128,6 +129,7 @@ std::string implant_text(const LiveImplant& implant) {
   return text_of_implant(
       {{"planned_seeds", implant.planned_seeds},
        {"seeds", seeds},
+       {"train_from_mm", implant.train_from_mm ? ImplantJson(*implant.train_from_mm) : ImplantJson(nullptr)},
        {"computing", implant.is_computing},
        {"now", score_json(implant.now)},
        {"planned", score_json(implant.planned)},

@@ -85,6 +85,8 @@ class LiveRun {
   void stop_recording(const std::string& why);
   [[nodiscard]] const std::string& recording_problem() const { return problem_; }
   [[nodiscard]] double time_s() const { return time_s_; }
+  /// Depth of the base in the last picture.
+  [[nodiscard]] double depth_mm() const { return runner_->snapshot().step.base_depth_mm; }
   /// Regions that contained the needle in the last picture, the region of the tip first.
   [[nodiscard]] std::vector<std::string> inside() const;
 

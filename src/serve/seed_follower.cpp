@@ -13,11 +13,28 @@ constexpr double kSeen_mm = 0.01;  // a smaller motion is not told
 SeedFollower::SeedFollower(std::shared_ptr<const Model> model)
     : model_(std::move(model)), probe_(std::make_shared<TissueProbe>()) {}
 
+void SeedFollower::order_drop(double beyond_tip_mm) {
+  ordered_ = probe_->order_drop(beyond_tip_mm);
+  dropping_ = 1;
+  taken_ = 0;
+}
+
+void SeedFollower::order_train(std::span<const double> behind_tip_mm, double half_length_mm) {
+  ordered_ = probe_->order_train(behind_tip_mm, half_length_mm);
+  dropping_ = std::min(behind_tip_mm.size(), TissueProbe::kTrain);
+  taken_ = 0;
+}
+
+void SeedFollower::call_off() {
+  if (dropping_ > 0) order_train({}, 0.0);
+}
+
 std::optional<ProbedDrop> SeedFollower::take_drop() {
   probe_->fetch();
-  const ProbedDrop& drop = probe_->answer().drop;
-  if (ordered_ == 0 || drop.number != ordered_ || !drop.is_done) return std::nullopt;
-  ordered_ = 0;
+  const TissueProbe::Answer& answer = probe_->answer();
+  if (dropping_ == 0 || answer.order != ordered_ || !answer.drops[taken_].is_done) return std::nullopt;
+  const ProbedDrop drop = answer.drops[taken_++];
+  dropping_ = drop.tip_in_tissue ? dropping_ - 1 : 0;
   return drop;
 }
 

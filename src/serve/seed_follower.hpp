@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace stylet::serve {
@@ -21,10 +22,15 @@ class SeedFollower {
   [[nodiscard]] const std::shared_ptr<TissueProbe>& probe() const { return probe_; }
 
   /// Orders that the next seed is pushed out of the tip. @param beyond_tip_mm distance of its centre from the tip
-  void order_drop(double beyond_tip_mm) { ordered_ = probe_->order_drop(beyond_tip_mm); }
-  /// Whether a drop has been ordered and not been taken.
-  [[nodiscard]] bool is_dropping() const { return ordered_ != 0; }
-  /// The ordered drop, once the loop has found its place; then it is taken.
+  void order_drop(double beyond_tip_mm);
+  /// Orders that a train is left as the needle is drawn back (TissueProbe::order_train()).
+  void order_train(std::span<const double> behind_tip_mm, double half_length_mm);
+  /// Leaves the rest of the train in the needle.
+  void call_off();
+  /// Number of seeds that have been ordered and not been taken.
+  [[nodiscard]] std::size_t dropping() const { return dropping_; }
+  /// The next of the ordered drops, once the loop has found its place; then it is taken. If the tip was not in the
+  /// tissue, the other seeds of the order are not dropped either.
   [[nodiscard]] std::optional<ProbedDrop> take_drop();
 
   /// Sets the seeds to follow. @param rest_mm [mm] LPS, in the tissue at rest
@@ -38,7 +44,9 @@ class SeedFollower {
  private:
   std::shared_ptr<const Model> model_;
   std::shared_ptr<TissueProbe> probe_;
-  std::uint32_t ordered_ = 0;
+  std::uint32_t ordered_ = 0;  ///< number of the last order
+  std::size_t dropping_ = 0;
+  std::size_t taken_ = 0;  ///< seeds of the last order that have been taken
   std::vector<Vec3> rest_;
   std::vector<MaterialPoint> at_;     ///< of each seed; outside of the mesh without an element
   std::vector<Index> nodes_;          ///< four for each seed that has an element

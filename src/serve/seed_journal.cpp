@@ -81,7 +81,7 @@ LivePlan live_plan(const RecordedPlan& plan) {
     of.depth_mm = needle.depth_mm;
   }
   for (const RecordedPlan::Seed& seed : plan.seeds)
-    out.needles[seed.needle].seeds.push_back({seed.number, seed.planned_mm, seed.axis, seed.drop_depth_mm});
+    out.needles[seed.needle].seeds.push_back({seed.number, seed.planned_mm, seed.axis, seed.drop_depth_mm, 0.0});
   out.current = plan.current;
   out.seed_length_mm = plan.seed_length_mm;
   out.seed_diameter_mm = plan.seed_diameter_mm;

@@ -149,7 +149,7 @@ struct Session::Parts {
   void keep_needle();
   /// Whether a seed is being dropped or its dose computed; then the session looks for the result more often.
   [[nodiscard]] bool is_implant_busy() const {
-    return implant && !replay && (implant->state().is_computing || (live && live->seeds().is_dropping()));
+    return implant && !replay && (implant->state().is_computing || (live && live->seeds().dropping() > 0));
   }
   void follow_implant();
   void take_drop();
@@ -324,7 +324,10 @@ void Session::Parts::place(const Request& request, std::size_t which) {
   const std::string name = shelf.new_name(plan_name);
   std::unique_ptr<Device> other = settings.companion ? settings.companion->device() : nullptr;
   status.device = other ? settings.companion->name() : "page";
-  if (implant) implant->set_current(needle);
+  if (implant) {
+    implant->set_current(needle);
+    implant->set_train(std::nullopt);
+  }
   const std::optional<RecordedPlan> plan_of_seeds =
       implant ? std::optional(recorded_plan(implant->plan())) : std::optional<RecordedPlan>();
   auto run = LiveRun::start(open, which, shelf.folder(name), settings.runner, settings.recorded_frames_per_s,
@@ -452,6 +455,7 @@ void Session::Parts::keep_needle() {
 void Session::Parts::take_drop() {
   const auto drop = live->seeds().take_drop();
   if (!drop) return;
+  if (live->seeds().dropping() == 0) implant->set_train(std::nullopt);
   const Result<SeedHistory> added = implant->add(*drop);
   if (!added) {
     audience.refuse(dropper, {added.error().where + ": " + added.error().what, added.error().cure});
@@ -500,10 +504,22 @@ void Session::Parts::drop_seed(const Request& request) {
   if (!implant) return no("this case has no plan of seeds", "Open a scenario with [plan]");
   if (!live) return no("no needle is in your hand now, so no seed can be dropped", "Return to the live needle");
   if (status.paused) return no("the simulation is paused, so no seed can be dropped", "Resume it, then drop the seed");
-  if (live->seeds().is_dropping()) return;  // the key was pressed twice within some hundredths of a second
+  if (live->seeds().dropping() > 0) {
+    if (implant->is_preloaded()) no("the train is being left already", "Draw the needle back over it");
+    return;  // otherwise the key was pressed twice within some hundredths of a second
+  }
   if (const auto seed = implant->next_seed(); !seed) return refuse(request, seed.error());
   dropper = request.viewer;
-  live->seeds().order_drop(0.5 * implant->seed_length_mm());
+  const double half_mm = 0.5 * implant->seed_length_mm();
+  if (!implant->is_preloaded()) return live->seeds().order_drop(half_mm);
+  const std::vector<double> behind = implant->train_mm();
+  if (behind.size() > TissueProbe::kTrain) {
+    return no(fmt::format("the needle has {} seeds, and the live page can leave at most {} as a train", behind.size(),
+                          TissueProbe::kTrain),
+              "Set procedure.technique = \"pushed\"");
+  }
+  live->seeds().order_train(behind, half_mm);
+  implant->set_train(live->depth_mm());
 }
 
 /// Puts a needle of the plan in front of the patient: at once if its model is compiled.
@@ -713,6 +729,12 @@ void Session::Parts::carry_out(const Request& request) {
       if (replay) {
         return refuse(request, input_error("the seeds", "a recording is being shown, whose seeds cannot be changed",
                                            "Return to the live needle"));
+      }
+      if (live && live->seeds().dropping() > 0) {
+        live->seeds().call_off();
+        implant->set_train(std::nullopt);
+        const bool has_left_some = implant->is_preloaded() && !implant->seeds_of_current().empty();
+        if (request.kind == Kind::undo && !has_left_some) break;  // what was being dropped is back in the needle
       }
       if (request.kind == Kind::clear) implant->clear();
       if (request.kind == Kind::undo) {

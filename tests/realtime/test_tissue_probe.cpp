@@ -42,9 +42,9 @@ struct Pushed {
     const std::uint32_t order = probe.order_drop(kBeyond_mm);
     for (int k = 0; k < 100; ++k) {
       rest();
-      if (probe.fetch() && probe.answer().drop.number == order && probe.answer().drop.is_done) break;
+      if (probe.fetch() && probe.answer().order == order && probe.answer().drops[0].is_done) break;
     }
-    return probe.answer().drop;
+    return probe.answer().drops[0];
   }
 };
 
@@ -70,6 +70,47 @@ TEST(TissueProbe, drops_nothing_while_the_tip_is_in_air_or_presses_on_the_skin) 
     EXPECT_TRUE(drop.is_done);
     EXPECT_FALSE(drop.tip_in_tissue) << depth;
   }
+}
+
+TEST(TissueProbe, leaves_the_seeds_of_a_train_where_they_were_held_as_the_tip_passes_them) {
+  Pushed needle(30.0);
+  const PlannedInsertion plan = needle.simulation.model().insertions()[0];
+  const std::array<double, 2> behind{2.25, 12.25};
+  const std::uint32_t order = needle.probe.order_train(behind, kBeyond_mm);
+  needle.rest();
+  std::array<Vec3, 2> held;
+  const Needle& shape = needle.simulation.insertion().needle();
+  for (std::size_t k = 0; k < 2; ++k) held[k] = shape.point(shape.length() - behind[k]);
+  for (int k = 0; k < 50; ++k) needle.rest();
+  needle.probe.fetch();
+  ASSERT_EQ(needle.probe.answer().order, order);
+  ASSERT_EQ(needle.probe.answer().drop_count, 2u);
+  EXPECT_FALSE(needle.probe.answer().drops[0].is_done) << "a needle at rest leaves none";
+  double depth = 30.0;
+  for (; depth > 10.0; depth -= 0.08) needle.step(plan, depth);
+  for (int k = 0; k < 50; ++k) needle.rest();
+  needle.probe.fetch();
+  for (std::size_t k = 0; k < 2; ++k) {
+    const ProbedDrop& drop = needle.probe.answer().drops[k];
+    ASSERT_TRUE(drop.is_done && drop.found) << k;
+    EXPECT_LT((vec3(drop.place) - held[k]).norm(), 0.02) << "the stylet holds it while the needle moves";
+    // The needle is nearly straight: its tip was at the seed's end.
+    EXPECT_NEAR(drop.base_depth_mm, 30.0 - behind[k] - kBeyond_mm, 0.3);
+  }
+  EXPECT_LT(needle.probe.answer().drops[0].time_s, needle.probe.answer().drops[1].time_s);
+}
+
+TEST(TissueProbe, a_train_that_is_called_off_leaves_no_further_seed) {
+  Pushed needle(30.0);
+  const PlannedInsertion plan = needle.simulation.model().insertions()[0];
+  const std::array<double, 1> behind{2.25};
+  needle.probe.order_train(behind, kBeyond_mm);
+  needle.rest();
+  const std::uint32_t none = needle.probe.order_train({}, kBeyond_mm);
+  for (double depth = 30.0; depth > 20.0; depth -= 0.16) needle.step(plan, depth);
+  needle.probe.fetch();
+  EXPECT_EQ(needle.probe.answer().order, none);
+  EXPECT_EQ(needle.probe.answer().drop_count, 0u);
 }
 
 TEST(TissueProbe, follows_points_as_the_tissue_moves) {
@@ -103,7 +144,7 @@ TEST(TissueProbe, answers_without_allocating) {
     ASSERT_EQ(allocations.count(), 0) << "step " << k;
   }
   needle.probe.fetch();
-  EXPECT_TRUE(needle.probe.answer().drop.is_done);
+  EXPECT_TRUE(needle.probe.answer().drops[0].is_done);
 }
 
 }  // namespace

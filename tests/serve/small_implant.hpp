@@ -45,6 +45,7 @@ inline std::shared_ptr<const serve::ImplantCase> small_implant(double step_mm = 
 inline serve::CaseSource implant_case(const std::function<void(Scenario&)>& change = {}) {
   return {"implant", [change](const Progress& progress) -> Result<serve::LoadedCase> {
             Scenario scenario = box_scenario();
+            scenario.procedure.technique = SeedTechnique::pushed;
             if (change) change(scenario);
             scenario.insertions.clear();
             scenario.plan.file = "plan.csv";

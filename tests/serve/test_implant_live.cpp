@@ -270,3 +270,46 @@ TEST(LiveImplant, a_lost_seed_is_said_in_words_and_gives_no_dose) {
   EXPECT_EQ(page.implant["now"]["d90_Gy"], 0.0);
   EXPECT_NE(page.notices.back()["text"].get<std::string>().find("Seed 1 of needle left is lost"), std::string::npos);
 }
+
+TEST(LiveImplant, a_preloaded_needle_leaves_its_train_where_it_was_held_as_it_is_drawn_back) {
+  Implanting at([](Scenario& scenario) { scenario.procedure.technique = SeedTechnique::preloaded; });
+  LiveClient& page = *at.page;
+  EXPECT_EQ(page.plan["technique"], "preloaded");
+  const double plane_mm = page.plan["needles"][0]["depth_mm"];
+  ASSERT_TRUE(at.go_to(plane_mm));
+  page.command(R"({"do":"drop"})");
+  ASSERT_TRUE(page.until([&] { return !page.implant["train_from_mm"].is_null(); }));
+  EXPECT_NEAR(page.implant["train_from_mm"], plane_mm, 0.1);
+  EXPECT_EQ(at.dropped(), 0u) << "nothing is left while the needle rests";
+  page.command(R"({"do":"drop"})");
+  ASSERT_TRUE(page.until([&] { return !page.notices.empty(); }));
+  EXPECT_NE(page.notices.back()["text"].get<std::string>().find("left already"), std::string::npos);
+  // Each seed is left when the tip has passed it.
+  ASSERT_TRUE(at.go_to(at.drop_depth(0, 0) - 2.0));
+  ASSERT_TRUE(page.until([&] { return at.dropped() == 1; }));
+  ASSERT_TRUE(at.go_to(at.drop_depth(0, 2) - 2.0));
+  ASSERT_TRUE(page.until([&] { return at.dropped() == 3 && page.implant["train_from_mm"].is_null(); }));
+  double first_superior = 0.0;
+  for (std::size_t seed = 0; seed < 3; ++seed) {
+    const auto& of = page.implant["seeds"][seed];
+    EXPECT_TRUE(of["in_tissue"]);
+    EXPECT_LT(std::abs(of["why"]["hand"][2].get<double>()), 0.1) << "the train was at its planned place";
+    EXPECT_NEAR(of["dropped_mm"][2].get<double>(), of["planned_mm"][2].get<double>(), 0.3);
+    const double off = of["rest_mm"][2].get<double>() - of["planned_mm"][2].get<double>();
+    if (seed == 0) first_superior = off;
+    if (seed == 2) {
+      EXPECT_GT(off, first_superior) << "the cannula drags the tissue to inferior on its way out";
+    }
+  }
+  // The train is taken back as a whole.
+  page.command(R"({"do":"undo"})");
+  ASSERT_TRUE(page.until([&] { return at.dropped() == 0; }));
+  // A train that has been begun can be called off.
+  ASSERT_TRUE(at.go_to(plane_mm));
+  page.command(R"({"do":"drop"})");
+  ASSERT_TRUE(page.until([&] { return !page.implant["train_from_mm"].is_null(); }));
+  page.command(R"({"do":"undo"})");
+  ASSERT_TRUE(page.until([&] { return page.implant["train_from_mm"].is_null(); }));
+  ASSERT_TRUE(at.go_to(0.0));
+  EXPECT_EQ(at.dropped(), 0u);
+}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { isFinished, meanMotion, nextNeedle, nextSeed, placesNow, replayWords, whatToDo } from 'live/src/implant/implant';
+import { depthToGo, isFinished, meanMotion, nextNeedle, nextSeed, placesNow, replayWords, whatToDo } from 'live/src/implant/implant';
 import { isodoseRings, sliceOf } from 'live/src/implant/isodose';
 import { goalWords } from 'live/src/implant/end_card';
 import { decode, Kind, WireError } from 'live/src/wire';
@@ -10,7 +10,7 @@ const needle = (name, ...depths) => ({
   name, hole: name, entry_mm: [0, 0, 0], direction: [0, 0, 1], depth_mm: 60, ready: true,
   seeds: depths.map((drop_depth_mm, k) => ({ number: 10 * name.charCodeAt(0) + k, planned_mm: [0, 0, drop_depth_mm], axis: [0, 0, 1], drop_depth_mm })),
 });
-const plan = (current) => ({ needles: [needle('A', 50, 40), needle('B', 55)], current, seed_length_mm: 4.5, seed_diameter_mm: 0.8, prescription_Gy: 145, source: '' });
+const plan = (current) => ({ needles: [needle('A', 50, 40), needle('B', 55)], current, seed_length_mm: 4.5, seed_diameter_mm: 0.8, prescription_Gy: 145, source: '', technique: 'pushed' });
 const implant = (...needles) => ({
   planned_seeds: 3, seeds: needles.map((n, i) => ({ needle: n, number: i, rest_mm: [0, 0, 10 * i], planned_mm: [0, 0, 0] })), computing: false, now: null, planned: null, error: null, why: [],
 });
@@ -29,6 +29,26 @@ test('what to do is said in words', () => {
   assert.match(whatToDo(plan(0), implant(0, 0), 40).text, /Needle A is empty/);
   assert.match(whatToDo(plan(-1), implant(), 40).text, /not in the plan/);
   assert.match(whatToDo(plan(1), implant(0, 0, 1), 40).text, /All seeds/);
+});
+
+test('a preloaded needle is drawn back over its train', () => {
+  const train = (current) => ({ ...plan(current), technique: 'preloaded' });
+  assert.deepEqual(whatToDo(train(0), null, 20), { text: 'Needle A, train of 2 seeds: push in 40.0 mm', inPlace: false });
+  assert.ok(whatToDo(train(0), null, 60.2).inPlace);
+  assert.equal(depthToGo(train(0), null), 60);
+  assert.equal(depthToGo(plan(0), null), 50, 'pushed seed by seed');
+  const left = { ...implant(0), train_from_mm: 61 };  // begun one millimetre too deep
+  assert.equal(whatToDo(train(0), left, 43).text, 'Needle A: draw back. Seed 2 of 2 is left in 2.0 mm');
+  assert.equal(depthToGo(train(0), left), 39);
+  assert.equal(depthToGo(train(0), implant(0, 0)), null);
+});
+
+test('a lost seed is nowhere', () => {
+  const now = { now_mm: [[0, 0, 1], [0, 0, 13]] };
+  const lost = implant(0, 0);
+  lost.seeds[0].lost = true;
+  assert.deepEqual(placesNow(lost, now), [null, [0, 0, 13]]);
+  assert.deepEqual(meanMotion(lost, now), [0, 0, 3]);
 });
 
 test('a recording says what its needle had dropped', () => {

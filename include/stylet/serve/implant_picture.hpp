@@ -3,6 +3,7 @@
 
 #include "stylet/dose/dose_evaluation.hpp"
 #include "stylet/implant/seed_history.hpp"
+#include "stylet/sim/choices.hpp"
 
 #include <array>
 #include <cstdint>
@@ -17,8 +18,10 @@ namespace stylet::serve {
 struct PlannedSeed {
   std::size_t number = 0;  ///< its position in DosePlan::sources
   Vec3 planned_mm = Vec3::Zero();
-  Vec3 axis = Vec3::UnitZ();   ///< towards the tip of its needle
-  double drop_depth_mm = 0.0;  ///< depth of the base at which it is pushed out at its planned place
+  Vec3 axis = Vec3::UnitZ();  ///< towards the tip of its needle
+  /// Depth of the base at which it is left at its planned place: pushed out of the tip, or passed by the tip.
+  double drop_depth_mm = 0.0;
+  double behind_tip_mm = 0.0;  ///< in the loaded needle, from the tip to its centre; 0 in a replay
 };
 
 /// A needle of the plan.
@@ -40,6 +43,7 @@ struct LivePlan {
   double seed_diameter_mm = 0.0;
   double prescription_Gy = 0.0;  ///< 0: none is known
   std::string source;            ///< name of the source model
+  SeedTechnique technique = SeedTechnique::pushed;
 };
 
 /// The dose of some seeds.
@@ -60,7 +64,9 @@ struct LiveImplant {
   std::size_t planned_seeds = 0;
   std::optional<ImplantScore> now;      ///< of the dropped seeds; empty until it is computed
   std::optional<ImplantScore> planned;  ///< of the plan; empty until it is computed
-  bool is_computing = false;            ///< `now` belongs to fewer or more seeds than have been dropped
+  /// A train is being left: depth of the base at which it was begun. Empty: none is.
+  std::optional<double> train_from_mm{};
+  bool is_computing = false;  ///< `now` belongs to fewer or more seeds than have been dropped
 };
 
 /// Where the dropped seeds are at this moment.

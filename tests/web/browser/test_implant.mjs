@@ -20,14 +20,16 @@ const { folder, remove } = makeFolder();
 let server, browser, page, problems;
 const newest = {};  // the newest message of each kind
 
+const listen = async (p) => p.on('websocket', (socket) => socket.on('framereceived', ({ payload }) => {
+  const kind = payload.readUInt32LE(0);
+  if ([PLAN, IMPLANT, SEEDS].includes(kind)) newest[kind] = JSON.parse(payload.subarray(8).toString());
+}));
+
 before(async () => {
-  server = await startServer(folder, { scenario: SCENARIO });
+  // The scenario's needles are preloaded; here each seed is pushed out by itself.
+  server = await startServer(folder, { scenario: SCENARIO, options: ['--set', 'procedure.technique="pushed"'] });
   // In software the 3D view takes most of the time; it is there for pictures only.
   browser = await openBrowser({ webgl: false });
-  const listen = async (p) => p.on('websocket', (socket) => socket.on('framereceived', ({ payload }) => {
-    const kind = payload.readUInt32LE(0);
-    if ([PLAN, IMPLANT, SEEDS].includes(kind)) newest[kind] = JSON.parse(payload.subarray(8).toString());
-  }));
   ({ page, problems } = await openVisitor(browser, server.url, { prepare: listen }));
 });
 after(async () => {
@@ -40,7 +42,7 @@ after(async () => {
 async function planFigure(name) {
   return Number(await page.locator('#implant .figure').filter({ hasText: name }).locator('b').textContent());
 }
-const notice = (text) => page.locator('.notice', { hasText: text }).waitFor();
+const notice = (text) => page.locator('.notice', { hasText: text }).first().waitFor();
 const dropped = () => planFigure('Seeds');
 
 /** What stylet info prints about the recording of a needle. */
@@ -193,5 +195,27 @@ test('a recording of a needle shows the seeds of each moment, and its panel cann
   await page.getByRole('button', { name: 'Back to the live needle' }).click();
   await until('the live seeds', () => newest[IMPLANT], (now) => now.seeds.length === live.seeds.length && now.now?.goals.length > 0);
   assert.deepEqual(newest[IMPLANT].seeds, live.seeds);
+  assert.deepEqual(problems, []);
+});
+
+test('a preloaded needle leaves its train as it is drawn back; a lost seed is said', async () => {
+  await page.close();
+  await server.kill();
+  server = await startServer(folder, { scenario: SCENARIO, options: ['--set', 'seed.loss_percent=100'] });
+  ({ page, problems } = await openVisitor(browser, server.url, { prepare: listen }));
+  await waitUntilReady(page);
+  await until('no seeds', () => newest[IMPLANT].seeds.length, (count) => count === 0);
+  await page.keyboard.press('3');
+  assert.match(await page.locator('.todo').textContent(), /train of \d seeds: push in/);
+  await goToSeed();
+  await page.keyboard.press('d');
+  await page.locator('.todo', { hasText: 'draw back' }).waitFor();
+  await keepPicture(page, 'implant-train');
+  await page.keyboard.press('g');
+  const { seeds } = newest[PLAN].needles[newest[PLAN].current];
+  await until('the train', () => newest[IMPLANT].seeds.length, (count) => count === seeds.length);
+  await notice('is lost: it has left the patient');
+  assert.match(await page.locator('#implant').textContent(), new RegExp(`${seeds.length} lost`));
+  await keepPicture(page, 'implant-lost');
   assert.deepEqual(problems, []);
 });

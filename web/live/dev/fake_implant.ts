@@ -17,7 +17,7 @@ export class FakeImplant {
     const all = patient.text.template ? holes(patient.text.template) : [];
     let number = 0;
     this.plan = {
-      current: 0, seed_length_mm: LENGTH, seed_diameter_mm: 0.8, prescription_Gy: 145, source: 'made up',
+      current: 0, seed_length_mm: LENGTH, seed_diameter_mm: 0.8, prescription_Gy: 145, source: 'made up', technique: 'pushed',
       needles: NAMES.map((name, k) => {
         const hole = all.find((h) => h.name === name);
         const [x, y] = [hole?.x ?? 0, hole?.y ?? 0];
@@ -74,7 +74,7 @@ export class FakeImplant {
     ];
     const score = (share: number) => ({ seeds: count, d90_Gy: 162 * share, d90_percent: 112 * share, v100_percent: 98 * share, took_ms: 12, goals: goals(share) });
     return {
-      planned_seeds: total, seeds: this.seeds, computing: false, now: score((0.94 * count) / total), planned: score(1),
+      planned_seeds: total, train_from_mm: null, seeds: this.seeds, computing: false, now: score((0.94 * count) / total), planned: score(1),
       error: {
         seeds: count, mean_mm: mean((s) => s.error_mm), p95_mm: errors[Math.floor(0.95 * count)] ?? 0, largest_mm: errors[count - 1] ?? 0,
         axes_mm: [0, 1, 2].map((k) => ({ mean: mean((s) => s.rest_mm[k] - s.planned_mm[k]), sd: 1.1 })),

@@ -6,7 +6,7 @@ import { element } from '../../../shared/dom';
 import { CanvasBox } from '../canvas_box';
 import { eventLabel, isHarm } from '../event_names';
 import { clamp, type HandControl } from '../hand';
-import { currentNeedle, droppedOf } from '../implant/implant';
+import { currentNeedle, droppedOf, isBeforeTrain, seedDepths } from '../implant/implant';
 import type { Session } from '../session';
 import { wheelNotches } from '../wheel';
 
@@ -160,8 +160,8 @@ export class PushBar {
     if (!frame || !scene) return;
     const planned = scene.insertions.find((i) => i.name === status?.insertion)?.depth_mm;
     this.labelled.length = 0;
-    const seeds = currentNeedle(this.session.plan)?.seeds;
-    if (seeds) this.drawSeeds(seeds.map((seed) => seed.drop_depth_mm), middle, text);
+    const seeds = seedDepths(this.session.plan, this.session.implant);
+    if (seeds) this.drawSeeds(seeds, middle, text);
     else if (planned !== undefined) this.flag(planned, middle, 'planned depth', SOFT, text);
     for (const event of this.session.events) {
       if (event.depth_mm > high) continue;
@@ -186,7 +186,8 @@ export class PushBar {
     const { context } = this.box;
     const { plan, implant } = this.session;
     const dropped = droppedOf(implant, plan?.current ?? -1);
-    if (depths[dropped] !== undefined) this.flag(depths[dropped], middle, `seed ${dropped + 1} of ${depths.length}`, SEED, text);
+    if (isBeforeTrain(plan, implant)) this.flag(currentNeedle(plan)!.depth_mm, middle, 'full depth', SEED, text);
+    else if (depths[dropped] !== undefined) this.flag(depths[dropped], middle, `seed ${dropped + 1} of ${depths.length}`, SEED, text);
     depths.forEach((depth, i) => {
       const x = this.toPixels(depth);
       context.beginPath();

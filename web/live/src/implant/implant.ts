@@ -9,7 +9,7 @@ export interface PlanNeedle {
 }
 export interface Plan {
   needles: PlanNeedle[]; current: number; seed_length_mm: number; seed_diameter_mm: number; prescription_Gy: number;
-  source: string;
+  source: string; technique: 'pushed' | 'preloaded';
 }
 
 export interface Goal { structure: string; metric: string; at_least: boolean; bound: number; value: number | null; met: boolean }
@@ -23,6 +23,7 @@ export interface DroppedSeed {
 export interface Errors { seeds: number; mean_mm: number; p95_mm: number; largest_mm: number; axes_mm: { mean: number; sd: number }[] }
 export interface Cause { cause: string; mean_mm: number | null; mean_xyz_mm: Place }
 export interface Implant {
+  train_from_mm: number | null;  // a train is being left, begun at this depth of the base
   planned_seeds: number; seeds: DroppedSeed[]; computing: boolean; now: Score | null; planned: Score | null; error: Errors; why: Cause[];
 }
 export interface Seeds { now_mm: Place[] }
@@ -34,6 +35,7 @@ export interface Dose {
   values: Uint16Array;  // x varies fastest
 }
 
+const BEHIND_TRAIN_MM = 2;        // so far the needle is drawn back beyond its last seed
 export const IN_PLACE_MM = 0.5;  // a needle this near to the planned depth of a seed counts as being there
 
 /** The needle of the plan that is in front of or in the patient; null: one beside the plan. */
@@ -74,17 +76,54 @@ export function whatToDo(plan: Plan, implant: Implant | null, depth: number): { 
   const seed = nextSeed(plan, implant);
   if (!seed) return { text: `Needle ${needle.name} is empty. Take the next one.`, inPlace: false };
   const number = needle.seeds.indexOf(seed) + 1;
+  if (plan.technique === 'preloaded') return whatToDoWithTrain(needle, number, seed, implant, depth);
   const togo = seed.drop_depth_mm - depth;
   const which = `Needle ${needle.name}, seed ${number} of ${needle.seeds.length}`;
   if (Math.abs(togo) <= IN_PLACE_MM) return { text: `${which}: the needle is in place. Drop it.`, inPlace: true };
   return { text: `${which}: ${togo > 0 ? 'push in' : 'pull back'} ${Math.abs(togo).toFixed(1)} mm`, inPlace: false };
 }
 
+/** What the hand has to do with a needle that is drawn back over its train. `number` counts the seed that is left next. */
+function whatToDoWithTrain(needle: PlanNeedle, number: number, seed: PlanSeed, implant: Implant | null, depth: number): { text: string; inPlace: boolean } {
+  const from = implant?.train_from_mm ?? null;
+  if (from !== null) {
+    const togo = depth - (seed.drop_depth_mm + from - needle.depth_mm);
+    return { text: `Needle ${needle.name}: draw back. Seed ${number} of ${needle.seeds.length} is left in ${Math.max(0, togo).toFixed(1)} mm`, inPlace: false };
+  }
+  const togo = needle.depth_mm - depth;
+  const count = needle.seeds.length - number + 1;
+  const which = `Needle ${needle.name}, train of ${count} ${count === 1 ? 'seed' : 'seeds'}`;
+  if (Math.abs(togo) <= IN_PLACE_MM) return { text: `Needle ${needle.name} is in place. Drop, then draw back.`, inPlace: true };
+  return { text: `${which}: ${togo > 0 ? 'push in' : 'pull back'} ${Math.abs(togo).toFixed(1)} mm`, inPlace: false };
+}
+
+/** Whether the needle has to go to its full depth, where a train is begun. */
+export function isBeforeTrain(plan: Plan | null, implant: Implant | null): boolean {
+  return plan?.technique === 'preloaded' && implant?.train_from_mm == null && nextSeed(plan, implant) !== null;
+}
+
+/** The depths of the base at which the present needle leaves its seeds: of a train from where it was begun. */
+export function seedDepths(plan: Plan | null, implant: Implant | null): number[] | null {
+  const needle = currentNeedle(plan);
+  const shift = needle && implant?.train_from_mm != null ? implant.train_from_mm - needle.depth_mm : 0;
+  return needle ? needle.seeds.map((seed) => seed.drop_depth_mm + shift) : null;
+}
+
+/** The depth to which the needle has to go next; null: it has no seed. */
+export function depthToGo(plan: Plan | null, implant: Implant | null): number | null {
+  const seed = nextSeed(plan, implant);
+  const needle = currentNeedle(plan);
+  if (!seed || !needle) return null;
+  if (plan!.technique !== 'preloaded') return seed.drop_depth_mm;
+  const depths = seedDepths(plan, implant)!;
+  return isBeforeTrain(plan, implant) ? needle.depth_mm : depths[depths.length - 1] - BEHIND_TRAIN_MM;
+}
+
 /** The words of the panel while a recording is shown: what its needle had dropped at the moment that is shown. */
 export function replayWords(plan: Plan, implant: Implant | null): string {
   const needle = currentNeedle(plan);
   const which = needle ? `Needle ${needle.name}, ${droppedOf(implant, plan.current)} of ${needle.seeds.length} seeds dropped` : 'A needle beside the plan';
-  return `Recording. ${which}. D90 is as it was computed then.`;
+  return `Recording. ${which}.`;
 }
 
 /** The mean motion [mm] of the dropped seeds from where they rest; zero without seeds. */

@@ -4,7 +4,7 @@ import { button, element } from '../../../shared/dom';
 import type { HandControl } from '../hand';
 import { onRepaintEvery } from '../repaint';
 import type { Session } from '../session';
-import { droppedOf, isFinished, lostSeeds, nextNeedle, nextSeed, replayWords, whatToDo, type Plan } from './implant';
+import { depthToGo, droppedOf, isFinished, lostSeeds, nextNeedle, nextSeed, replayWords, whatToDo, type Plan } from './implant';
 
 const WRITE_EVERY_MS = 60;
 
@@ -41,10 +41,10 @@ export class ImplantActions {
   undo(): void {
     this.session.command({ do: 'undo' });
   }
-  /** Moves the needle to the planned depth of its next seed. */
+  /** Moves the needle to the depth of its next seed; with a train to its retraction plane, then back over the train. */
   go(): void {
-    const seed = nextSeed(this.session.plan, this.session.implant);
-    if (seed) this.hand.setDepth(seed.drop_depth_mm);
+    const depth = depthToGo(this.session.plan, this.session.implant);
+    if (depth !== null) this.hand.setDepth(depth);
   }
   needle(index: number): void {
     this.hand.rest();
@@ -115,10 +115,14 @@ export class ImplantPanel {
     this.todo.classList.toggle('in-place', inPlace);
     const seed = nextSeed(plan, implant);
     const can = session.steering && status?.paused !== true;
-    this.drop.disabled = !can || !seed;
+    this.drop.disabled = !can || !seed || implant?.train_from_mm != null;
     this.drop.classList.toggle('in-place', inPlace);
+    const isTrain = plan.technique === 'preloaded';
+    this.drop.title = isTrain ? 'Hold the train where it is; its seeds are left as you draw the needle back' : 'Drop the next seed where the tip is now';
+    this.undo.title = isTrain ? 'Take the seeds of the last needle back into it (also Ctrl Z)' : 'Take the last seed back (also Ctrl Z)';
+    this.go.title = isTrain ? 'Move the needle to its retraction plane; after Drop, back over its train' : 'Move the needle to the planned depth of the next seed';
     this.go.disabled = !can || !seed || inPlace || session.guest !== '';
-    this.undo.disabled = !session.steering || !implant || implant.seeds.length === 0;
+    this.undo.disabled = !session.steering || !implant || (implant.seeds.length === 0 && implant.train_from_mm == null);
     const next = nextNeedle(plan, implant);
     this.next.disabled = !session.steering || next < 0 || next === plan.current;
     this.next.classList.toggle('suggested', !seed && next >= 0);
@@ -150,7 +154,7 @@ export class ImplantPanel {
     const relative = (plan?.prescription_Gy ?? 0) > 0;
     const then = planned ? `; the plan reaches ${relative ? `${planned.d90_percent?.toFixed(0)} %` : `${planned.d90_Gy?.toFixed(0)} Gy`}` : '';
     this.d90.set(number(relative ? now?.d90_percent : now?.d90_Gy, relative ? 1 : 0), relative ? '%' : 'Gy',
-      `Dose that 90 % of the gland receives from the seeds dropped so far, in percent of ${plan?.prescription_Gy} Gy${then}${now ? `. Computed in ${now.took_ms.toFixed(0)} ms` : ''}`,
+      `Dose that 90 % of the gland receives from the seeds dropped so far, in percent of ${plan?.prescription_Gy} Gy${then}${this.session.replaying ? '. It is as it was computed when this was recorded' : now ? `. Computed in ${now.took_ms.toFixed(0)} ms` : ''}`,
       relative && (now?.d90_percent ?? 0) >= 100);
     this.v100.set(number(now?.v100_percent, 1), '%',
       `Share of the gland that receives the prescribed dose${planned?.v100_percent != null ? `; the plan reaches ${planned.v100_percent.toFixed(1)} %` : ''}`, (now?.v100_percent ?? 0) >= 95);
