@@ -364,6 +364,26 @@ void subtract_product(Eigen::Ref<MatX> C, const Eigen::Ref<const MatX>& A, const
            A.cols());
 }
 
+void subtract_symmetric_product(Eigen::Ref<MatX> C, const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& B) {
+  constexpr Eigen::Index kColumns = 6;
+  const Eigen::Index n = A.rows();
+  for (Eigen::Index k = 0; k < n; k += kTile) {
+    const Eigen::Index nk = std::min(kTile, n - k);
+    const Eigen::Index below = n - k - nk;
+    for (Eigen::Index c = 0; c < B.cols(); c += kColumns) {
+      const Eigen::Index count = std::min(kColumns, B.cols() - c);
+      auto tile = C.block(k, c, nk, count);
+      subtract_product(tile, A.block(k, k, nk, nk), B.block(k, c, nk, count));
+      if (below == 0) continue;
+      const auto column = A.block(k + nk, k, below, nk);
+      subtract_product(C.block(k + nk, c, below, count), column, B.block(k, c, nk, count));
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kTile, kColumns> known(nk, count);
+      transposed_product(known, column, B.block(k + nk, c, below, count));
+      tile -= known;
+    }
+  }
+}
+
 void subtract_product_transposed(Eigen::Ref<MatX> C, const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& B) {
   subtract(C.data(), C.outerStride(), A.data(), A.outerStride(), B.data(), B.outerStride(), 1, C.rows(), C.cols(),
            A.cols());

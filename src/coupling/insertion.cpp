@@ -33,9 +33,9 @@ constexpr double kBent_mm = 10.0;
 constexpr int kMostInAir = 50;
 /// [N] Out-of-balance moment over the needle's length below which a needle in the air has settled.
 constexpr double kSettled_N = 1e-10;
-/// Softness of the lateral hold of a tip whose hold the shaft has taken over, over the tissue's own compliance. Raised
-/// much further, its equations lose digits.
-constexpr double kNotHeld = 1e6;
+/// Softness of the lateral hold of a tip whose hold the shaft has taken over, over the tissue's own compliance. Raised,
+/// it bears less across the needle, and a matrix is outdated when the needle turns a little.
+constexpr double kNotHeld = 1e3;
 
 std::unique_ptr<ContactCompliance> engine_of(const InsertionTissue& tissue, const CouplingSettings& settings,
                                              int capacity) {
@@ -166,7 +166,7 @@ void Insertion::Parts::make_balance() {
   if (!at_rest.empty()) bundle = std::make_unique<NeedleBundle>(*held->needle, at_rest, settings.capacity + 1);
   predictor = std::make_unique<Predictor>(needles_in_balance().state().size());
   const BalanceParts parts{.settings = settings,
-                           .contacts = {needles_in_balance(), tissue, held->path.tip, held->shaft},
+                           .contacts = {needles_in_balance(), tissue, held->path.tip, held->shaft, bundle.get()},
                            .path = held->path,
                            .hand = held->hand,
                            .predictor = *predictor,

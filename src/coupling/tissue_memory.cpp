@@ -21,9 +21,11 @@ void TissueMemory::gather(const ContactCompliance& compliance) {
   const Eigen::Index count = 3 * Eigen::Index{compliance.points()};
   Eigen::Map<VecX> sum(of_shaft_.data(), count);
   sum.setZero();
-  dense::subtract_product(sum, compliance.wide().block(0, 3, count, count - 3),
-                          Eigen::Map<const VecX>(remembered_.data() + 3, count - 3));
+  const Eigen::Map<const VecX> remembered(remembered_.data() + 3, count - 3);
+  dense::subtract_symmetric_product(sum.tail(count - 3), compliance.wide().block(3, 3, count - 3, count - 3),
+                                    remembered);
   sum = -sum;
+  sum.head<3>() = compliance.wide().block(3, 0, count - 3, 3).transpose().lazyProduct(remembered);
   gathered_ = true;
   version_ = compliance.version();
 }

@@ -14,9 +14,17 @@ using TipRows = ContactSystem::TipRows;
 /// The contacts at which springs are lent to the needle.
 enum class Springs { none, at_grips, everywhere };
 
+struct Case {
+  Springs springs = Springs::none;
+  int at_rest = 0;  ///< most contacts of another needle that rests, which come after the tip
+};
+
 /// Contacts along a curved needle, in a medium whose compliance decreases with distance.
 struct Equations {
-  explicit Equations(int contacts, Springs springs) : rows(settings, contacts), system(rows, contacts) {
+  /// @param contacts of all needles, the tip included
+  Equations(int contacts, Case of)
+      : at_rest(std::min(of.at_rest, contacts - 1)), rows(settings, contacts), system(rows, contacts, at_rest) {
+    const Springs springs = of.springs;
     const bool lend_springs = springs != Springs::none;
     system.needle.count = contacts;
     const Eigen::Index n = 3 * static_cast<Eigen::Index>(contacts);
@@ -25,6 +33,7 @@ struct Equations {
         const Vec3 r = (c - d) * Vec3(0.1, 0.05, 3.0);
         const double fall = 2.0 / (1.0 + r.norm());
         system.A.block<3, 3>(3 * c, 3 * d) = fall * (Mat3::Identity() + r * r.transpose() / (1.0 + r.squaredNorm()));
+        if (rests(c) != rests(d)) continue;
         const double lever = std::min(c + 1, d + 1);
         system.needle.N.block<3, 3>(3 * c, 3 * d) =
             0.05 * lever * lever * (3.0 * std::max(c + 1, d + 1) - lever) * Vec3(1.0, 1.0, 1e-3).asDiagonal();
@@ -50,6 +59,8 @@ struct Equations {
     system.needle.supported = lend_springs;
     size = n;
   }
+
+  [[nodiscard]] bool rests(int contact) const { return contact > 0 && contact <= at_rest; }
 
   /// The expected result of solve(): λ in the frames and p, from all equations in one system.
   [[nodiscard]] std::pair<VecX, VecX> whole(TipRows held) const {
@@ -121,12 +132,13 @@ struct Equations {
   }
 
   CouplingSettings settings;
+  int at_rest;
   ContactRows rows;
   ContactSystem system;
   Eigen::Index size;
 };
 
-class ContactEquations : public testing::TestWithParam<Springs> {};
+class ContactEquations : public testing::TestWithParam<Case> {};
 
 TEST_P(ContactEquations, are_solved_whatever_of_the_tip_is_held) {
   for (const int contacts : {1, 2, 9, 31}) {
@@ -151,6 +163,7 @@ TEST_P(ContactEquations, are_solved_while_compliance_changes_with_the_cut) {
 
 TEST_P(ContactEquations, are_solved_while_the_tip_turns_with_the_needle) {
   for (const int contacts : {2, 9, 31}) {
+    if (contacts - 1 <= GetParam().at_rest) continue;  // there is no contact behind the tip
     for (const bool cuts : {false, true}) {
       Equations equations(contacts, GetParam());
       ContactSystem& system = equations.system;
@@ -168,8 +181,9 @@ TEST_P(ContactEquations, are_solved_while_the_tip_turns_with_the_needle) {
 }
 
 TEST_P(ContactEquations, are_solved_with_a_tangent_that_was_prepared_when_there_were_fewer_contacts) {
-  for (const int fewer : {1, 2, 9}) {
-    Equations equations(12, GetParam());
+  for (const int own : {1, 2, 9}) {
+    const int fewer = GetParam().at_rest + own;
+    Equations equations(GetParam().at_rest + 12, GetParam());
     ContactSystem& system = equations.system;
     ContactRows& rows = equations.rows;
     ASSERT_TRUE(system.factorise());
@@ -177,7 +191,11 @@ TEST_P(ContactEquations, are_solved_with_a_tangent_that_was_prepared_when_there_
     system.prepared.N = 1.3 * system.needle.N;
     system.prepared.spring = system.needle.spring;
     for (LentSpring& spring : system.prepared.spring) spring.stiffness *= 0.8;
-    system.prepared.supported = GetParam() != Springs::none;
+    if (const Eigen::Index n = 3 * static_cast<Eigen::Index>(equations.at_rest); n > 0) {  // those stay as they are
+      system.prepared.N.block(3, 3, n, n) = system.needle.N.block(3, 3, n, n);
+      std::copy_n(system.needle.spring.begin() + 1, equations.at_rest, system.prepared.spring.begin() + 1);
+    }
+    system.prepared.supported = GetParam().springs != Springs::none;
     system.fill_prepared();
     ASSERT_TRUE(system.factorise_prepared());
     equations.expect_solved(TipRows::all, "beside it, the one in use");
@@ -219,11 +237,11 @@ TEST_P(ContactEquations, are_solved_when_the_tip_has_moved_on_and_the_last_conta
   ContactRows& rows = equations.rows;
   ASSERT_TRUE(system.factorise());
   const Mat3 more = 0.3 * Mat3::Identity();
-  if (GetParam() == Springs::none) {
+  if (GetParam().springs == Springs::none) {
     rows.yield[6].axial = 5.0;
     ASSERT_TRUE(system.solve(TipRows::all));
   }
-  const bool last_has_a_spring = GetParam() != Springs::none;
+  const bool last_has_a_spring = GetParam().springs != Springs::none;
   EXPECT_EQ(system.keep_first(9), !last_has_a_spring);
   if (last_has_a_spring) {
     ASSERT_TRUE(system.factorise());
@@ -232,14 +250,16 @@ TEST_P(ContactEquations, are_solved_when_the_tip_has_moved_on_and_the_last_conta
   system.A.topLeftCorner<3, 3>() += more;
   system.add_tip();
   equations.expect_solved(TipRows::all, "nine of twelve, a softer tip");
-  EXPECT_FALSE(system.keep_first(4)) << "size of older ones stay";
+  const int few = GetParam().at_rest > 0 ? 8 : 4;
+  EXPECT_FALSE(system.keep_first(few)) << "size of older ones stay";
   ASSERT_TRUE(system.factorise());
-  equations.size = 12;
-  equations.expect_solved(TipRows::all, "four of twelve");
+  equations.size = 3 * few;
+  equations.expect_solved(TipRows::all, "a few of twelve");
 }
 
 TEST_P(ContactEquations, are_solved_with_contacts_that_came_alive_since_the_matrix_was_made) {
-  for (const int before : {1, 2, 12}) {
+  for (const int own : {1, 2, 12}) {
+    const int before = GetParam().at_rest + own;
     Equations equations(before + 3, GetParam());
     ContactSystem& system = equations.system;
     ContactRows& rows = equations.rows;
@@ -264,13 +284,14 @@ TEST_P(ContactEquations, are_solved_with_contacts_that_came_alive_since_the_matr
 }
 
 TEST_P(ContactEquations, are_put_in_order_again_when_many_contacts_have_come_alive) {
-  Equations equations(30, GetParam());
+  const int first = GetParam().at_rest + 5;
+  Equations equations(first + 25, GetParam());
   ContactSystem& system = equations.system;
-  for (std::size_t c = 5; c < 30; ++c) system.needle.spring[c] = {};
-  system.needle.count = 5;
+  for (int c = first; c < first + 25; ++c) system.needle.spring[static_cast<std::size_t>(c)] = {};
+  system.needle.count = first;
   ASSERT_TRUE(system.factorise());
   int anew = 0;
-  for (int c = 5; c < 30; ++c) {
+  for (int c = first; c < first + 25; ++c) {
     system.needle.count = c + 1;
     if (!system.append()) {
       ++anew;
@@ -302,15 +323,18 @@ TEST_P(ContactEquations, tell_how_far_the_needle_is_beyond_the_tissue_where_the_
 }
 
 INSTANTIATE_TEST_SUITE_P(Needle, ContactEquations,
-                         testing::Values(Springs::none, Springs::at_grips, Springs::everywhere),
+                         testing::Values(Case{Springs::none}, Case{Springs::at_grips}, Case{Springs::everywhere},
+                                         Case{Springs::none, 6}, Case{Springs::at_grips, 6},
+                                         Case{Springs::everywhere, 6}),
                          [](const auto& tested) -> std::string {
-                           switch (tested.param) {
+                           const std::string beside = tested.param.at_rest > 0 ? "_beside_one_at_rest" : "";
+                           switch (tested.param.springs) {
                              case Springs::none:
-                               return "by_itself";
+                               return "by_itself" + beside;
                              case Springs::at_grips:
-                               return "on_springs";
+                               return "on_springs" + beside;
                              default:
-                               return "on_springs_and_one_at_its_tip";
+                               return "on_springs_and_one_at_its_tip" + beside;
                            }
                          });
 

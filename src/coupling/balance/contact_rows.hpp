@@ -55,6 +55,8 @@ class ContactRows {
   [[nodiscard]] std::span<const PointLoad> loads() const { return loads_; }
   /// [N] The largest load, at least 1 N.
   [[nodiscard]] double largest_load() const;
+  /// [N] The error that a balance may have.
+  [[nodiscard]] double allowed() const { return settings_.tolerance * largest_load(); }
 
   /// Updates the yield D of each contact and its shift for a sub-step of h seconds, in the contact's present state.
   /// Also updates the friction terms `coulomb`, `slip` and `reach` of each shaft contact.

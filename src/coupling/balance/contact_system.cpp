@@ -9,19 +9,29 @@
 
 namespace stylet {
 
-ContactSystem::ContactSystem(const ContactRows& rows, int most)
-    : needle(most), prepared(most), rows_(rows), grips_(most - 1), prepared_grips_(most - 1), columns_(most) {
+ContactSystem::ContactSystem(const ContactRows& rows, int most, int at_rest)
+    : needle(most),
+      prepared(most),
+      rows_(rows),
+      grips_(most - 1 - at_rest),
+      prepared_grips_(most - 1 - at_rest),
+      columns_(most - at_rest),
+      resting_(rows, at_rest, most - at_rest) {
   const Eigen::Index n = 3 * static_cast<Eigen::Index>(most);
+  const Eigen::Index own = 3 * static_cast<Eigen::Index>(most - at_rest);
   A = MatX::Zero(dense::column_length(n), n);
   lambda = push = work_ = VecX::Zero(n);
-  beyond_ = MatX::Zero(dense::column_length(n), 3);
+  drift_ = others_ = VecX::Zero(own);
+  beyond_ = MatX::Zero(dense::column_length(own), 3);
 }
 
 bool ContactSystem::factorise() {
   columns_.outdate();
   const Eigen::Index n = grip_rows();
-  fits_ = n == 0 ||
-          grips_.factorise(A.block(3, 3, n, n), needle.N.block(3, 3, n, n), needle.shaft_springs(), yields_of(needle));
+  const Eigen::Index at = first_row();
+  fits_ = resting_.fit(A, needle) && (n == 0 || grips_.factorise(seen().block(3, 3, n, n), needle.N.block(at, at, n, n),
+                                                                 springs_of(needle), yields_of(needle)));
+  needle.made_for = resting_.version();
   return fits_;
 }
 
@@ -29,22 +39,27 @@ bool ContactSystem::append() {
   if (!fits_) return false;
   columns_.outdate();
   const Eigen::Index n = grip_rows();
+  const Eigen::Index at = first_row();
   if (n == 3) return factorise();
-  fits_ = grips_.append(A.block(3, 3, n, n), needle.N.block(3, 3, n, n), yields_of(needle).back());
+  resting_.take_contacts(A, needle);
+  fits_ = grips_.append(seen().block(3, 3, n, n), needle.N.block(at, at, n, n), yields_of(needle).back());
   return fits_;
 }
 
 bool ContactSystem::keep_first(int contacts) {
   needle.count = contacts;
+  resting_.keep_first(contacts - resting_.count());
   if (!fits_) return false;
   columns_.outdate();
-  fits_ = grips_.keep_first(contacts - 1);
+  fits_ = grips_.keep_first(contacts - 1 - resting_.count());
   return fits_;
 }
 
 void ContactSystem::fill_prepared() {
-  const Eigen::Index n = prepared.rows() - 3;
-  prepared_grips_.fill(A.block(3, 3, n, n), prepared.N.block(3, 3, n, n), prepared.shaft_springs(),
+  prepared.made_for = resting_.version();
+  const Eigen::Index at = first_row();
+  const Eigen::Index n = prepared.rows() - at;
+  prepared_grips_.fill(seen().block(3, 3, n, n), prepared.N.block(at, at, n, n), springs_of(prepared),
                        yields_of(prepared));
 }
 
@@ -52,12 +67,16 @@ bool ContactSystem::factorise_prepared() { return prepared_grips_.factorise_fill
 
 void ContactSystem::take_prepared() {
   columns_.outdate();
-  fits_ = true;
   std::swap(needle, prepared);
   std::swap(grips_, prepared_grips_);
+  resting_.keep_first(needle.count - resting_.count());
+  fits_ = true;
 }
 
-void ContactSystem::add_tip() { columns_.take_tip(A, needle, grips_); }
+void ContactSystem::add_tip() {
+  columns_.outdate();
+  resting_.move_tip();
+}
 
 Vec3 ContactSystem::own_yield(int contact) const {
   const auto c = static_cast<std::size_t>(contact);
@@ -77,20 +96,30 @@ Vec3 ContactSystem::own_yield(int contact) const {
 /// of the drift.
 bool ContactSystem::solve_grips() {
   const Eigen::Index n = grip_rows();
+  if (resting_.are_any()) {
+    const bool fit = resting_.follow() && needle.made_for == resting_.version();
+    if (!fit && !factorise()) return false;
+    resting_.solve(A, needle);
+  }
   if (n > 0 && !grips_.change(yields_of(needle)) && !(factorise() && grips_.change(yields_of(needle)))) return false;
-  if (!columns_.is_current()) add_tip();
+  if (!columns_.is_current()) columns_.take_tip(seen(), needle, first_row(), grips_);
+  if (rows_.tip.drifts()) {
+    drift_.head<3>() = rows_.tip.drift.head<3>();
+    drift_.segment(3, n) = rows_.tip.drift.segment(first_row(), n);
+    if (resting_.are_any()) resting_.correct_drift(drift_.head(3 + n));
+  }
   if (n == 0) return true;
 
   const Eigen::Index all = grips_.rows();
   auto right = columns_.right(all);
-  for (int c = 1; c < needle.count; ++c)
-    right.segment<3>(3 * c - 3).noalias() = rows_.frame[static_cast<std::size_t>(c)] * rows_.error(c);
+  for (int own = 1; load(own) < needle.count; ++own)
+    right.segment<3>(3 * own - 3).noalias() = rows_.frame[static_cast<std::size_t>(load(own))] * error(own);
   grips_.across(right.head(n), right.tail(grips_.spring_rows()));
   right = -right;
-  right.head(n) += needle.free.segment(3, n);
+  right.head(n) += needle.free.segment(first_row(), n);
   if (rows_.tip.drifts()) {
     auto drift = columns_.drift(all);
-    drift.head(n) = rows_.tip.drift.segment(3, n);
+    drift.head(n) = drift_.segment(3, n);
     grips_.across(drift.head(n), drift.tail(grips_.spring_rows()));
   }
   columns_.solve(needle, grips_, rows_.tip.drifts());
@@ -102,6 +131,7 @@ bool ContactSystem::solve_grips() {
 /// @return π of the tip, and the force φ of the spring there
 std::pair<Vec3, Vec3> ContactSystem::solve_tip(TipRows held) {
   const Eigen::Index n = grip_rows();
+  const Eigen::Index at = first_row();
   const Eigen::Index all = n > 0 ? grips_.rows() : 0;
   const auto column = columns_.push(all);
   const auto solved = columns_.solved_push(all);
@@ -117,13 +147,13 @@ std::pair<Vec3, Vec3> ContactSystem::solve_tip(TipRows held) {
 
   // The compliance of tissue and contact, by which π and φ move the tip, and the error of the tip's rows.
   const Yield& tip = rows_.yield.front();
-  Mat3 own = A.topLeftCorner<3, 3>();
+  Mat3 own = seen().topLeftCorner<3, 3>();
   own += (tip.axial - tip.lateral) * tip.along * tip.along.transpose() + tip.lateral * Mat3::Identity();
   Mat3 corner = N_tip;
-  Vec3 rest = free.head<3>() - Q * rows_.error(0);
+  Vec3 rest = free.head<3>() - Q * error(0);
   if (motion.drifts()) {
-    own.noalias() += motion.cut_per_N * motion.drift.head<3>() * t.transpose();
-    rest -= motion.cut_due * motion.drift.head<3>();
+    own.noalias() += motion.cut_per_N * drift_.head<3>() * t.transpose();
+    rest -= motion.cut_due * drift_.head<3>();
   }
   if (n > 0) {
     corner.noalias() -= column.transpose().lazyProduct(solved);
@@ -141,7 +171,7 @@ std::pair<Vec3, Vec3> ContactSystem::solve_tip(TipRows held) {
     Along moves = {free.head<3>(), N_tip};
     Mat3 borne = Mat3::Identity();
     if (n > 0) {
-      const Mat3 per_lent = subtract_grips(N.block(3, 0, n, 3), moves);
+      const Mat3 per_lent = subtract_grips(N.block(at, 0, n, 3), moves);
       own.noalias() -= column.transpose().lazyProduct(of_spring);
       borne.noalias() += G * per_lent;
     }
@@ -165,7 +195,7 @@ std::pair<Vec3, Vec3> ContactSystem::solve_tip(TipRows held) {
     // The force turns with the tip's direction, and so does the part of the lateral gap that lies along it.
     const Eigen::Index g = 3 * static_cast<Eigen::Index>(motion.behind);
     Along turn = {free.head<3>() - free.segment<3>(g), N_tip - N.block<3, 3>(g, 0)};
-    beyond_.topRows(n) = N.block(3, 0, n, 3) - N.block(3, g, n, 3);
+    beyond_.topRows(n) = N.block(at, 0, n, 3) - N.block(at, g, n, 3);
     const Mat3 per_lent = subtract_grips(beyond_.topRows(n), turn);
     turn.at -= per_lent * lent.at;
     turn.per -= per_lent * lent.per;
@@ -206,6 +236,7 @@ bool ContactSystem::solve(TipRows held) {
   push.head<3>() = rows_.now.head<3>() + change;
 
   const Eigen::Index n = grip_rows();
+  const Eigen::Index at = first_row();
   auto forces = work_.head(needle.rows());
   forces.head<3>() = push.head<3>() + lent;
   if (n > 0) {
@@ -215,9 +246,17 @@ bool ContactSystem::solve(TipRows held) {
     if (needle.lends_at_tip()) right.noalias() -= columns_.solved_spring(all).lazyProduct(lent);
     if (rows_.tip.drifts())
       right -= rows_.tip.cut_per_N * rows_.frame.front().col(2).dot(change + lent) * columns_.drift(all);
-    push.segment(3, n) = rows_.now.segment(3, n) + right.head(n);
-    forces.tail(n) = push.segment(3, n);
+    push.segment(at, n) = rows_.now.segment(at, n) + right.head(n);
+    forces.tail(n) = push.segment(at, n);
     grips_.add_lent(right.tail(grips_.spring_rows()), forces.tail(n));
+  }
+  if (resting_.are_any()) {
+    auto others = others_.head(3 + n);
+    others.head<3>() = change + lent;
+    others.tail(n) = forces.tail(n) - rows_.now.segment(at, n);
+    const TipMotion& tip = rows_.tip;
+    const double cut = tip.drifts() ? tip.cut_due + tip.cut_per_N * rows_.frame.front().col(2).dot(change + lent) : 0.0;
+    resting_.finish(others, cut, push, forces);
   }
   for (int c = 0; c < needle.count; ++c) {
     lambda.segment<3>(3 * c).noalias() =
@@ -232,7 +271,9 @@ bool ContactSystem::solve(TipRows held) {
 double ContactSystem::axial_excess(int contact) const {
   const auto c = static_cast<std::size_t>(contact);
   const Vec3 change = rows_.frame[c] * lambda.segment<3>(3 * contact) - rows_.now.segment<3>(3 * contact);
-  return rows_.frame[c].col(2).dot(grips_.yield(contact - 1).of(change) - rows_.yield[c].of(change));
+  const Yield used =
+      c < first_grip() ? resting_.yield(contact - 1) : grips_.yield(contact - static_cast<int>(first_grip()));
+  return rows_.frame[c].col(2).dot(used.of(change) - rows_.yield[c].of(change));
 }
 
 double ContactSystem::opening() const {

@@ -3,6 +3,7 @@
 
 #include "coupling/balance/contact_rows.hpp"
 #include "coupling/balance/grip_columns.hpp"
+#include "coupling/balance/resting_grips.hpp"
 
 #include <utility>
 
@@ -20,15 +21,19 @@ namespace stylet {
 /// The matrix of the shaft contacts takes most of the time. factorise() factorises it, and it is used for as long as
 /// iterations converge with it (GripMatrix). The tip is a border of three rows that is added each time, because its
 /// compliance changes with every cut, and because it may be held in none, one or all of its directions. There are three
-/// rows for each contact, the tip first. Vectors are in LPS; ContactRows::shift and `lambda` are in the contacts'
-/// frames (n1, n2, t). Nothing allocates after construction.
+/// rows for each contact, in the order of Contacts. Vectors are in LPS; ContactRows::shift and `lambda` are in the
+/// contacts' frames (n1, n2, t). Nothing allocates after construction.
+///
+/// The contacts of needles at rest are eliminated first (RestingGrips). The matrix of the shaft contacts, their columns
+/// and the tip then belong to the moved needle alone, in the tissue that the others hold.
 class ContactSystem {
  public:
   /// The directions in which the tip is held.
   enum class TipRows { none, axial, all };
 
   /// @param rows of the contacts; outlives the system @param most largest number of contacts, tip included
-  ContactSystem(const ContactRows& rows, int most);
+  /// @param at_rest number of contacts of needles at rest
+  ContactSystem(const ContactRows& rows, int most, int at_rest);
 
   MatX A;               ///< [mm/N] compliance of the tissue, both triangles
   NeedleSide needle;    ///< the needle's side of the equations
@@ -41,8 +46,13 @@ class ContactSystem {
   /// Whether the matrix belongs to the present contacts, with an N and an A that are close enough. If not, factorise()
   /// has to be called.
   [[nodiscard]] bool fits() const { return fits_; }
-  /// Marks the matrix as outdated: N or A have changed too much.
+  /// Marks the matrix as outdated: the moved needle's N has changed too much.
   void outdate() { fits_ = false; }
+  /// The same where A, the contacts or the N of needles at rest have changed.
+  void outdate_all() {
+    fits_ = false;
+    resting_.outdate();
+  }
 
   /// Factorises the matrix with the present A, N, D and springs. @return false where it is found singular, although a
   /// later solve() may still succeed
@@ -62,7 +72,8 @@ class ContactSystem {
   /// Puts the prepared needle's side and its factor in the place of the present ones.
   void take_prepared();
 
-  /// Adds the tip with the present A and N. Valid as long as neither the tip nor the matrix changes much.
+  /// Adds the tip with the present A and N in the next solve(). Valid as long as neither the tip nor the matrix changes
+  /// much.
   void add_tip();
 
   /// Computes λ and p for the present D, shift and gap. @return false where the matrix is singular
@@ -92,9 +103,26 @@ class ContactSystem {
   [[nodiscard]] Mat3 subtract_grips(const Eigen::Ref<const MatX>& columns, Along& moves) const;
 
   [[nodiscard]] bool turns(TipRows held) const { return held == TipRows::axial && rows_.tip.behind > 0; }
-  [[nodiscard]] Eigen::Index grip_rows() const { return needle.rows() - 3; }
+  /// Rows of the moved needle's shaft contacts, and the first of them among all rows.
+  [[nodiscard]] Eigen::Index grip_rows() const { return needle.rows() - first_row(); }
+  [[nodiscard]] Eigen::Index first_row() const { return 3 * static_cast<Eigen::Index>(first_grip()); }
+  /// Number of the first shaft contact of the moved needle.
+  [[nodiscard]] std::size_t first_grip() const { return 1 + static_cast<std::size_t>(resting_.count()); }
+  /// Number of a contact of the moved needle among all contacts. @param own 0: its tip
+  [[nodiscard]] int load(int own) const { return own == 0 ? 0 : own + resting_.count(); }
   [[nodiscard]] std::span<const Yield> yields_of(const NeedleSide& side) const {
-    return std::span(rows_.yield).subspan(1, static_cast<std::size_t>(side.count - 1));
+    return std::span(rows_.yield).subspan(first_grip(), static_cast<std::size_t>(side.count) - first_grip());
+  }
+  [[nodiscard]] std::span<const LentSpring> springs_of(const NeedleSide& side) const {
+    const auto all = side.shaft_springs();
+    return all.empty() ? all : all.subspan(first_grip() - 1);
+  }
+  /// The compliance of the tissue for the moved needle's contacts, its tip first.
+  [[nodiscard]] const MatX& seen() const { return resting_.are_any() ? resting_.compliance() : A; }
+  /// Error of a contact of the moved needle, in its frame [mm], with unchanged forces on the moved needle.
+  [[nodiscard]] Vec3 error(int own) const {
+    const int c = load(own);
+    return rows_.error(c) + rows_.frame[static_cast<std::size_t>(c)].transpose() * resting_.moved(own);
   }
 
   const ContactRows& rows_;
@@ -102,6 +130,9 @@ class ContactSystem {
   GripMatrix grips_;
   GripMatrix prepared_grips_;
   GripColumns columns_;
+  RestingGrips resting_;
+  VecX drift_;   ///< [mm/mm] (rows) drift of the moved needle's contacts
+  VecX others_;  ///< [N] (rows) work space: changes of the forces on the moved needle's contacts
   MatX beyond_;  ///< (rows × 3) work space: N's columns of the tip minus those of the contact behind it
   VecX work_;    ///< (rows) work space
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/largest.hpp"
+#include "coupling/balance/needle_bundle.hpp"
 #include "coupling/contacts/shaft_contacts.hpp"
 #include "coupling/tip/tip_contact.hpp"
 
@@ -13,10 +14,11 @@ namespace stylet {
 /// moves. The contacts of needles at rest follow, needle by needle, and then the shaft contacts of the needle that the
 /// hand moves, from the base on. A view without data of its own.
 struct Contacts {
-  Needle& needle;  ///< the needle that the hand moves; with needles at rest, NeedleBundle
+  Needle& needle;  ///< the needle that the hand moves; with needles at rest, `bundle`
   TissueResponse& tissue;
   TipContact& tip;
   ShaftContacts& shaft;
+  NeedleBundle* bundle = nullptr;  ///< all needles, where some rest in the tissue
 
   [[nodiscard]] int count() const { return 1 + static_cast<int>(shaft.count()); }
   [[nodiscard]] ShaftContact& of_shaft(int load) const { return shaft.all()[static_cast<std::size_t>(load - 1)]; }

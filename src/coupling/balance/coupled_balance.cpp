@@ -99,7 +99,7 @@ struct CoupledBalance::Progress {
 CoupledBalance::CoupledBalance(const BalanceParts& parts)
     : parts_(parts),
       rows_(parts.settings, parts.most_contacts + 1),
-      system_(rows_, parts.most_contacts + 1),
+      system_(rows_, parts.most_contacts + 1, parts.contacts.first_own() - 1),
       states_(parts_.contacts),
       tissue_(system_, parts.most_contacts + 1),
       tangent_(parts_.contacts.needle, system_, rows_, parts.most_contacts + 1, parts.phases),
@@ -119,7 +119,7 @@ void CoupledBalance::gather() {
   const int same = tissue_.renew(parts_.contacts);
   if (same < std::min(tissue_.before(), count)) {
     tangent_.outdate();
-    system_.outdate();
+    system_.outdate_all();
   } else if (count < tissue_.before()) {  // the last contacts slid off the tip
     system_.keep_first(count);
   }
@@ -130,7 +130,7 @@ void CoupledBalance::gather() {
   auto gap = rows_.gap.head(size);
   for (int c = 0; c < count; ++c) now.segment<3>(3 * c) = parts_.contacts.force(c);
   for (int c = 0; c < count; ++c) gap.segment<3>(3 * c) = rows_.needle_at(c) - rows_.unloaded(parts_.contacts, c);
-  dense::subtract_product(gap, system_.A.topLeftCorner(size, size), now);
+  dense::subtract_symmetric_product(gap, system_.A.topLeftCorner(size, size), now);
   gap = -gap;
   const TipRelief relief = parts_.contacts.tissue.relief(parts_.contacts.forces());
   if (relief.is_any()) {
@@ -156,9 +156,21 @@ double CoupledBalance::look(double h) {
   }
   gather();
   const InPhase in_phase(parts_.phases, StepPhase::balance);
-  const double allowed = parts_.settings.tolerance * rows_.largest_load();
-  Needle& needle = parts_.contacts.needle;
-  return larger_or_nan(equation_error(), needle.residual(rows_.loads()) / (kNeedleShare * needle.length())) / allowed;
+  const double of_contacts = larger_or_nan(error_of_tip(), error_of(1, parts_.contacts.count()));
+  return larger_or_nan(of_contacts, parts_.contacts.needle.residual(rows_.loads()) / moment()) / rows_.allowed();
+}
+
+/// [mm] The needle's out-of-balance moment over this length counts as a force.
+double CoupledBalance::moment() const { return kNeedleShare * parts_.contacts.needle.length(); }
+
+/// Whether needles at rest have the largest error at the present iterate.
+bool CoupledBalance::resting_needles_lag() const {
+  NeedleBundle* const bundle = parts_.contacts.bundle;
+  if (bundle == nullptr) return false;
+  const int first_own = parts_.contacts.first_own();
+  const double own = larger_or_nan(larger_or_nan(error_of_tip(), error_of(first_own, parts_.contacts.count())),
+                                   bundle->residual_of_moving(rows_.loads()) / moment());
+  return larger_or_nan(error_of(1, first_own), bundle->residual_of_resting(rows_.loads()) / moment()) > own;
 }
 
 ContactSystem::TipRows CoupledBalance::tip_rows() const {
@@ -166,15 +178,24 @@ ContactSystem::TipRows CoupledBalance::tip_rows() const {
   return parts_.contacts.tip.has_lateral_rows() ? ContactSystem::TipRows::all : ContactSystem::TipRows::axial;
 }
 
-/// The largest error of a held row at the present shape, as a force: the error divided by the row's own yield.
-double CoupledBalance::equation_error() const {
+/// The largest error of the rows of the shaft contacts first … end − 1 at the present shape, as a force [N]: the error
+/// divided by the row's own yield.
+double CoupledBalance::error_of(int first, int end) const {
   double error = 0.0;
-  const auto held = tip_rows();
-  const int tip_from = held == ContactSystem::TipRows::all ? 0 : held == ContactSystem::TipRows::axial ? 2 : 3;
-  for (int c = 0; c < parts_.contacts.count(); ++c) {
+  for (int c = first; c < end; ++c) {
     const Vec3 off = rows_.error(c).cwiseAbs().cwiseQuotient(system_.own_yield(c));
-    for (int k = c == 0 ? tip_from : 0; k < 3; ++k) error = larger_or_nan(error, off[k]);
+    for (int k = 0; k < 3; ++k) error = larger_or_nan(error, off[k]);
   }
+  return error;
+}
+
+/// The same for the tip.
+double CoupledBalance::error_of_tip() const {
+  const auto held = tip_rows();
+  const int from = held == ContactSystem::TipRows::all ? 0 : held == ContactSystem::TipRows::axial ? 2 : 3;
+  const Vec3 off = rows_.error(0).cwiseAbs().cwiseQuotient(system_.own_yield(0));
+  double error = 0.0;
+  for (int k = from; k < 3; ++k) error = larger_or_nan(error, off[k]);
   // In a direction in which the tip is not held, its force must be zero.
   if (held == ContactSystem::TipRows::axial)
     error = larger_or_nan(error, (rows_.frame[0].leftCols<2>().transpose() * parts_.contacts.tip.force).norm());
@@ -373,7 +394,8 @@ bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
     if (progress.old_matrix) {
       kept_.keep(parts_.contacts);
     } else {
-      tangent_.linearise(parts_.contacts, predictor.last_way() > 0.0, effort);
+      tangent_.linearise(parts_.contacts, progress.new_tangent && resting_needles_lag(), predictor.last_way() > 0.0,
+                         effort);
       progress.new_tangent = true;
     }
     if (!system_.fits()) {

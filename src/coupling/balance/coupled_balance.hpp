@@ -39,7 +39,10 @@ class CoupledBalance : public BalanceSolver {
   void slide(int load);
   bool cut_on(double h, int iteration);
   void march(double advance);
-  [[nodiscard]] double equation_error() const;
+  [[nodiscard]] double error_of(int first, int end) const;
+  [[nodiscard]] double error_of_tip() const;
+  [[nodiscard]] bool resting_needles_lag() const;
+  [[nodiscard]] double moment() const;
   [[nodiscard]] bool is_astray(double largest_at_start) const;
   void give_way();
 

@@ -9,10 +9,10 @@ GripColumns::GripColumns(int most) {
   solved_ = MatX::Zero(rows, kDrift + 1);
 }
 
-void GripColumns::take_tip(const MatX& A, const NeedleSide& needle, GripMatrix& grips) {
+void GripColumns::take_tip(const MatX& A, const NeedleSide& needle, Eigen::Index first, GripMatrix& grips) {
   current_ = true;
   solved_for_ = 0;
-  const Eigen::Index n = needle.rows() - 3;
+  const Eigen::Index n = needle.rows() - first;
   if (n == 0) return;
   // Columns of a push at the tip, and of a force of the tip's spring, which acts on the tissue only.
   auto column = column_.topRows(grips.rows());
@@ -22,7 +22,7 @@ void GripColumns::take_tip(const MatX& A, const NeedleSide& needle, GripMatrix& 
     grips.across(of_spring.head(n), of_spring.tail(grips.spring_rows()));
   }
   column.rightCols<3>() = column.leftCols<3>();
-  column.rightCols<3>().topRows(n) += needle.N.block(3, 0, n, 3);
+  column.rightCols<3>().topRows(n) += needle.N.block(first, 0, n, 3);
   begun_.topRows(grips.rows()) = column;
   grips.begin(begun_.block(0, kTip, grips.rows(), 3));
   if (needle.lends_at_tip()) grips.begin(begun_.block(0, kSpring, grips.rows(), 3));

@@ -17,8 +17,9 @@ class GripColumns {
   void outdate() { current_ = false; }
   [[nodiscard]] bool is_current() const { return current_; }
   /// Assembles the tip's columns.
-  /// @param A [mm/N] compliance of the tissue, both triangles
-  void take_tip(const MatX& A, const NeedleSide& needle, GripMatrix& grips);
+  /// @param A [mm/N] compliance of the tissue among the contacts of the matrix, their tip first
+  /// @param first row of the first of these contacts, without the tip, on the needle's side
+  void take_tip(const MatX& A, const NeedleSide& needle, Eigen::Index first, GripMatrix& grips);
   /// Solves for the tip's columns if B has changed since the last call, and for the other columns.
   /// @param drifts whether the drift is used
   void solve(const NeedleSide& needle, GripMatrix& grips, bool drifts);

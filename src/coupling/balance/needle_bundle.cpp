@@ -48,10 +48,8 @@ void NeedleBundle::write_own(const Eigen::Ref<const MatX>& from, Eigen::Ref<MatX
   to.bottomRightCorner(shaft, shaft) = from.bottomRightCorner(shaft, shaft);
 }
 
-/// Writes the compliance of the needles at rest, and the zeros between needles.
+/// Writes the compliance of the needles at rest.
 void NeedleBundle::write_resting(Eigen::Ref<MatX> to) const {
-  to.middleCols(3, resting_rows()).setZero();
-  to.middleRows(3, resting_rows()).setZero();
   for (const Resting& rest : resting_) {
     const Eigen::Index at = 3 * static_cast<Eigen::Index>(rest.first);
     to.block(at, at, rest.block.rows(), rest.block.cols()) = rest.block;
@@ -73,6 +71,8 @@ bool NeedleBundle::linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> 
   for (Resting& rest : resting_) {
     const auto first = static_cast<std::size_t>(rest.first);
     const auto count = static_cast<std::size_t>(rest.count);
+    if (keeps_resting_ && rest.needle->relax(loads.subspan(first, count), free.segment(3 * rest.first, 3 * rest.count)))
+      continue;
     const auto lent = springs.empty() ? springs : springs.subspan(first, count);
     const bool rests = rest.needle->linearise(loads.subspan(first, count), rest.block,
                                               free.segment(3 * rest.first, 3 * rest.count), lent, otherwise);
@@ -131,7 +131,11 @@ void NeedleBundle::advance(std::span<const PointLoad> loads) {
 }
 
 double NeedleBundle::residual(std::span<const PointLoad> loads) {
-  double largest = moving_.residual(own(loads));
+  return larger_or_nan(residual_of_moving(loads), residual_of_resting(loads));
+}
+
+double NeedleBundle::residual_of_resting(std::span<const PointLoad> loads) const {
+  double largest = 0.0;
   for (const Resting& rest : resting_) {
     const auto part = loads.subspan(static_cast<std::size_t>(rest.first), static_cast<std::size_t>(rest.count));
     largest = larger_or_nan(largest, rest.needle->residual(part));

@@ -11,6 +11,9 @@ namespace stylet {
 /// The needle that the hand moves together with the needles at rest, as one needle for the balance: its loads are those
 /// of Contacts, and its compliance has a block for each needle. Questions about the axis, the base and the guide are
 /// answered for the needle that the hand moves. Nothing allocates after construction.
+///
+/// Between needles the compliance is zero. To save time these zeros are not written: a matrix that is passed to
+/// linearise() or prepared_compliance() has to be zero there.
 class NeedleBundle final : public Needle {
  public:
   /// A needle at rest, and the number of its contacts, which does not change.
@@ -32,6 +35,8 @@ class NeedleBundle final : public Needle {
   [[nodiscard]] Vec3 tangent(double s) const override { return moving_.tangent(s); }
   [[nodiscard]] AxisPlace place(double s) const override { return moving_.place(s); }
 
+  /// Whether linearise() keeps the tangents of the needles at rest, whose shapes hardly change.
+  void keep_resting(bool keep) { keeps_resting_ = keep; }
   bool linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
                  std::span<const Mat3> springs = {}, Indefinite otherwise = Indefinite::shift) override;
   bool relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free) override;
@@ -44,6 +49,9 @@ class NeedleBundle final : public Needle {
   void advance(std::span<const PointLoad> loads) override;
   /// The largest residual of a needle [N mm].
   [[nodiscard]] double residual(std::span<const PointLoad> loads) override;
+  /// Those of the needle that the hand moves, and of the needles at rest.
+  [[nodiscard]] double residual_of_moving(std::span<const PointLoad> loads) { return moving_.residual(own(loads)); }
+  [[nodiscard]] double residual_of_resting(std::span<const PointLoad> loads) const;
   void damp(double ratio) override { moving_.damp(ratio); }
   void straighten() override { moving_.straighten(); }
   [[nodiscard]] double energy() const override;
@@ -77,6 +85,7 @@ class NeedleBundle final : public Needle {
   MatX prepared_;    ///< [mm/N] the own compliance of the next tangent
   VecX motion_;      ///< [mm] work space
   int prepared_count_ = 0;
+  bool keeps_resting_ = false;
   mutable VecX state_;  ///< what state() returns
 };
 

@@ -4,6 +4,7 @@
 #include "core/dense_kernels.hpp"
 #include "coupling/balance/grip_matrix.hpp"
 
+#include <cstdint>
 #include <utility>
 
 namespace stylet {
@@ -25,6 +26,7 @@ class NeedleSide {
   bool supported = false;          ///< whether springs are lent to any needle
   bool own_supported = false;      ///< whether springs are lent to the needle that the hand moves
   int count = 0;                   ///< number of contacts, tip included
+  std::uint64_t made_for = 0;      ///< RestingGrips::version() for which the matrix of this side was made
 
   [[nodiscard]] Eigen::Index rows() const { return 3 * static_cast<Eigen::Index>(count); }
   /// [mm/N] (3 count × 3 count)

@@ -52,21 +52,24 @@ void NeedleTangent::release() {
 /// Whether a tangent is made on springs from the start, like the last one; from time to time it is tried without.
 bool NeedleTangent::expects_springs() { return system_.needle.own_supported && ++on_springs_for_ < kTryWithout; }
 
-void NeedleTangent::linearise(const Contacts& contacts, bool advances, Effort& effort) {
+void NeedleTangent::linearise(const Contacts& contacts, bool resting_too, bool advances, Effort& effort) {
   const InPhase in_phase(phases_, StepPhase::needle_tangent);
   const int count = contacts.count();
   NeedleSide& side = system_.needle;
   side.count = count;
-  const bool others_rest = contacts.first_own() > 1;
+  const bool with_resting = contacts.bundle != nullptr && (resting_too || !resting_made_);
+  if (contacts.bundle != nullptr) contacts.bundle->keep_resting(!with_resting);
   int own = advances && expects_springs() ? kFewSprings : 0;
   if (own == 0) on_springs_for_ = 0;
   // A needle at rest that has needed springs will need them again: its load hardly changes.
   bool all = false;
   while (true) {
-    const bool few = own > 0 && (resting_lent_ > 0 || !others_rest);
+    const bool few = own > 0 && (resting_lent_ > 0 || !with_resting);
     const bool last = all || (few && count <= kFewSprings + 1);
     effort.spend(effort.needle() + (all ? effort.matrix_on_all_springs() - effort.matrix() : 0.0));
-    lend_springs(contacts, own, resting_lent_, side);
+    lend_springs(contacts, own, side);
+    if (with_resting) lend_springs_at_rest(contacts, side);
+    side.supported = own > 0 || resting_lent_ > 0;
     std::span<const Mat3> lent;
     if (side.supported) lent = {springs_.data(), static_cast<std::size_t>(count)};
     const Indefinite otherwise = last ? Indefinite::shift : Indefinite::give_up;
@@ -79,11 +82,15 @@ void NeedleTangent::linearise(const Contacts& contacts, bool advances, Effort& e
     } else {
       all = true;
       own = count;
-      if (others_rest) resting_lent_ = count;
+      if (with_resting) resting_lent_ = count;
     }
   }
   resting_lent_ = std::min(resting_lent_, kFewSprings);
   fits_ = true;
+  if (with_resting) {
+    resting_made_ = true;
+    system_.outdate_all();
+  }
   system_.outdate();
   stage_ = Stage::none;
   worn_mm_ = 0.0;
@@ -127,30 +134,34 @@ void NeedleTangent::lend_spring(const Contacts& contacts, int load, int stands_f
   springs_[l] = spring.matrix();
 }
 
-/// Lends springs to each needle, evenly spread over its contacts and including the last one. All springs of a needle
-/// together are stiffer than the tissue, so the needle on them does not buckle where needle and tissue together do not.
-/// A few springs stand for all. A tip that is held has a spring of this stiffness, too, because shaft contacts alone do
-/// not stabilise a needle that has bowed out between hand and bone.
-/// @param own, resting largest number of springs on the moved needle, and on each needle at rest; 0: none
-/// @param side its springs are written
-void NeedleTangent::lend_springs(const Contacts& contacts, int own, int resting, NeedleSide& side) {
-  side.own_supported = own > 0;
-  side.supported = own > 0 || (resting > 0 && contacts.first_own() > 1);
-  if (!side.supported && contacts.first_own() == 1) return;
-  const auto lend_to = [&](int first, int end, int most) {
-    const int every = most > 0 ? (std::max(end - first, 1) + most - 1) / most : 0;
-    for (int c = first; c < end; ++c)
-      lend_spring(contacts, c, every > 0 && (end - 1 - c) % every == 0 ? every : 0, side);
-    return every;
-  };
+/// Lends springs to the contacts first … end − 1 of one needle, evenly spread and including the last one.
+/// @param most largest number of springs; 0: none @return for how many contacts each spring stands; 0: no spring
+int NeedleTangent::lend_springs_to(const Contacts& contacts, int first, int end, int most, NeedleSide& side) {
+  const int every = most > 0 ? (std::max(end - first, 1) + most - 1) / most : 0;
+  for (int c = first; c < end; ++c) lend_spring(contacts, c, every > 0 && (end - 1 - c) % every == 0 ? every : 0, side);
+  return every;
+}
+
+/// Lends springs to the moved needle. All springs of a needle together are stiffer than the tissue, so the needle on
+/// them does not buckle where needle and tissue together do not. A few springs stand for all. A tip that is held has a
+/// spring of this stiffness, too, because shaft contacts alone do not stabilise a needle that has bowed out between
+/// hand and bone.
+/// @param most largest number of springs; 0: none @param side its springs are written
+void NeedleTangent::lend_springs(const Contacts& contacts, int most, NeedleSide& side) {
+  side.own_supported = most > 0;
+  if (most == 0 && contacts.bundle == nullptr) return;
+  const int every = lend_springs_to(contacts, contacts.first_own(), contacts.count(), most, side);
+  lend_spring(contacts, 0, contacts.tip.holds() ? every : 0, side);
+}
+
+/// Lends springs to each needle at rest.
+void NeedleTangent::lend_springs_at_rest(const Contacts& contacts, NeedleSide& side) {
   for (int first = 1; first < contacts.first_own();) {
     int end = first + 1;
     while (end < contacts.first_own() && &contacts.needle_of(end) == &contacts.needle_of(first)) ++end;
-    lend_to(first, end, resting);
+    lend_springs_to(contacts, first, end, resting_lent_, side);
     first = end;
   }
-  const int every = lend_to(contacts.first_own(), contacts.count(), own);
-  lend_spring(contacts, 0, contacts.tip.holds() ? every : 0, side);
 }
 
 void NeedleTangent::prepare(const Contacts& contacts) {
@@ -197,12 +208,9 @@ bool NeedleTangent::prepare_on_springs(const Contacts& contacts) {
   const int count = contacts.count();
   NeedleSide& side = system_.prepared;
   const NeedleSide& now = system_.needle;
-  lend_springs(contacts, lent_, 0, side);
-  for (int c = 1; c < contacts.first_own(); ++c) {
-    const auto at = static_cast<std::size_t>(c);
-    side.spring[at] = now.supported ? now.spring[at] : LentSpring{};
-    side.supported = side.supported || side.spring[at].stiffness > 0.0;
-  }
+  lend_springs(contacts, lent_, side);
+  std::copy(now.spring.begin() + 1, now.spring.begin() + contacts.first_own(), side.spring.begin() + 1);
+  side.supported = lent_ > 0 || resting_lent_ > 0;
   std::span<const Mat3> lent;
   if (side.own_supported) lent = {springs_.data(), static_cast<std::size_t>(count)};
   const bool more = lent_ < std::max(count - 1, 1);

@@ -33,9 +33,11 @@ class NeedleTangent {
   /// The needle has left the tissue; in the air it needs no springs.
   void release();
 
-  /// Makes the tangent at the present shape; the system's matrix no longer fits it.
+  /// Makes the tangent at the present shape; the system's matrix no longer fits it. Needles at rest keep their
+  /// tangents, because their shapes hardly change.
+  /// @param resting_too whether they need new ones, too
   /// @param advances whether the hand pushes the needle forward; a needle that needed springs will then need them again
-  void linearise(const Contacts& contacts, bool advances, Effort& effort);
+  void linearise(const Contacts& contacts, bool resting_too, bool advances, Effort& effort);
   /// Takes a Newton step of the needle with the present tangent. @return false where the tangent belongs to other
   /// contacts
   [[nodiscard]] bool relax();
@@ -58,7 +60,9 @@ class NeedleTangent {
  private:
   enum class Stage { none, begun, tangent, compliance, filled, matrix };
 
-  void lend_springs(const Contacts& contacts, int own, int resting, NeedleSide& side);
+  void lend_springs(const Contacts& contacts, int most, NeedleSide& side);
+  void lend_springs_at_rest(const Contacts& contacts, NeedleSide& side);
+  int lend_springs_to(const Contacts& contacts, int first, int end, int most, NeedleSide& side);
   void lend_spring(const Contacts& contacts, int load, int stands_for, NeedleSide& side);
   [[nodiscard]] bool prepare_on_springs(const Contacts& contacts);
   [[nodiscard]] bool prepared_contacts_are_there(const Contacts& contacts) const;
@@ -77,6 +81,7 @@ class NeedleTangent {
   Stage stage_ = Stage::none;     ///< progress of the next tangent
   int lent_ = 0;                  ///< springs lent to the moved needle in the next tangent
   int resting_lent_ = 0;          ///< springs lent to each needle at rest
+  bool resting_made_ = false;     ///< whether the needles at rest have tangents
   std::vector<int> points_;       ///< points of the contacts that the next tangent belongs to
 };
 

@@ -83,7 +83,7 @@ void TissueBlock::gather(const Contacts& contacts, int same) {
       const int point = points_[static_cast<std::size_t>(c)];
       const Mat3 block = contacts.tissue.compliance_now(point, points_[static_cast<std::size_t>(d)]);
       // A contact created ahead of the shaft changes no compliance among the present ones, unless it changes the mesh.
-      if (d < same && block != system_.A.block<3, 3>(3 * c, 3 * d)) system_.outdate();
+      if (d < same && block != system_.A.block<3, 3>(3 * c, 3 * d)) system_.outdate_all();
       system_.A.block<3, 3>(3 * c, 3 * d) = block;
       system_.A.block<3, 3>(3 * d, 3 * c) = block.transpose();
     }

@@ -364,7 +364,7 @@ TEST(NeedleSide, lends_its_springs_only_where_it_is_supported) {
 TEST(TissueBlock, is_the_compliances_block_of_the_present_contacts) {
   NeedleInTissue needle;
   ContactRows rows(needle.block.settings, 10);
-  ContactSystem system(rows, 10);
+  ContactSystem system(rows, 10, 0);
   TissueBlock block(system, 10);
   const auto expect_whole = [&] {
     const ContactCompliance& compliance = needle.block.tissue->compliance();
@@ -392,7 +392,7 @@ TEST(TissueBlock, is_the_compliances_block_of_the_present_contacts) {
 TEST(TissueBlock, foresees_how_gaps_change_with_a_cut_that_leads_aside) {
   NeedleInTissue needle;
   ContactRows rows(needle.block.settings, 10);
-  ContactSystem system(rows, 10);
+  ContactSystem system(rows, 10, 0);
   TissueBlock block(system, 10);
   rows.take_places(needle.contacts);
   block.gather(needle.contacts, block.renew(needle.contacts));
