@@ -76,7 +76,7 @@ void SeedFollower::follow(const DisplayField& field, DisplayField::Load& load) {
 std::optional<std::vector<Vec3>> SeedFollower::news() {
   std::vector<Vec3> now;
   now.reserve(rest_.size());
-  for (std::size_t k = 0; k < rest_.size(); ++k) now.push_back(rest_[k] + moved_[k]);
+  for (std::size_t k = 0; k < rest_.size(); ++k) now.emplace_back(rest_[k] + moved_[k]);
   probe_->fetch();
   const TissueProbe::Answer& answer = probe_->answer();
   for (std::size_t k = 0; k < watched_.size() && answer.version == version_; ++k) {
