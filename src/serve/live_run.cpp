@@ -25,6 +25,7 @@ constexpr double kShareForFrames = 0.05;  ///< share of this thread's time for f
 
 std::vector<SurfacePoint> nodes_as_points(const TetMesh& mesh) {
   std::vector<SurfacePoint> points;
+  points.reserve(static_cast<std::size_t>(mesh.node_count()));
   for (Index node = 0; node < mesh.node_count(); ++node) points.push_back({{node, -1, -1}, {1.0, 0.0, 0.0}});
   return points;
 }
