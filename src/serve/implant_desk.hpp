@@ -64,7 +64,7 @@ class ImplantDesk {
   /// Makes the next take_changes() return everything, because the viewers have seen another implant.
   void show_again();
 
-  /// What has changed since the last call.
+  /// The changes since the last call.
   struct Changes {
     bool plan = false;
     bool state = false;

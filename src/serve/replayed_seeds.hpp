@@ -20,7 +20,7 @@ class ReplayedSeeds {
   explicit ReplayedSeeds(const Replay& replay);
 
   [[nodiscard]] LivePlan plan() const;
-  /// What had been carried out until the present moment; empty if it is the same as at the last call.
+  /// The acts that had been carried out until the present moment; empty if it is the same as at the last call.
   [[nodiscard]] std::optional<LiveImplant> news();
   /// Where the seeds of the last news() are now.
   [[nodiscard]] LiveSeeds places() const;

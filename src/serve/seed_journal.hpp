@@ -16,7 +16,7 @@ class SeedJournal {
     std::vector<SeedAct> acts;
     std::vector<RecordedScore> doses;
   };
-  /// What has changed since the last call. The first call gives the seeds of earlier needles.
+  /// The changes since the last call. The first call gives the seeds of earlier needles.
   /// @param time_s [s] simulated time of the recording @param score_is_current LiveImplant::now is of all its seeds
   [[nodiscard]] News news(const LiveImplant& implant, bool score_is_current, double time_s);
 

@@ -250,8 +250,8 @@ TEST(HolePrediction, without_needles_in_place_says_nothing_about_them) {
   EXPECT_FALSE(alone->in_place);
 }
 
-// What needles in place have done to the tissue is what the two ways of counting differ by: they have pushed the gland
-// to superior, and the tissue that the tip finds at the planned place is tissue from further inferior.
+// The two ways of counting differ by the motion of the tissue that the needles in place have caused: they have pushed
+// the gland to superior, and the tip finds tissue from further inferior at the planned place.
 TEST(NeedlesInPlace, hold_the_gland_where_they_have_pushed_it) {
   const Scenario s = scenario_beside_needles();
   KnownTargets targets;

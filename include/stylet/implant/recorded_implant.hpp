@@ -60,7 +60,7 @@ struct RecordedScore {
   double v100_percent = 0.0;  ///< share of the target that receives the prescribed dose; NaN without one
 };
 
-/// What a recording of the live page has of an implant.
+/// The plan, the acts and the doses of an implant in a recording of the live page.
 struct RecordedImplant {
   RecordedPlan plan;
   std::vector<SeedAct> acts;  ///< in the order in which they happened

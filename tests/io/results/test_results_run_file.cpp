@@ -504,7 +504,7 @@ TEST(RunFile, of_a_live_session_holds_the_seeds_of_its_implant) {
     EXPECT_EQ(acts[1].seed.dropped_s, 4.5);
     EXPECT_EQ(acts[1].seed.by(SeedCause::motion), expected.by(SeedCause::motion));
     EXPECT_FALSE(acts[1].seed.in_tissue);
-    // What was in the tissue at each moment follows from the acts.
+    // The seeds that were in the tissue at each moment follow from the acts.
     EXPECT_EQ(back->implant->seeds_after(back->implant->acts_until(1.0)).size(), 1u);
     EXPECT_EQ(back->implant->seeds_after(back->implant->acts_until(1.25)).size(), 2u);
     ASSERT_EQ(back->implant->seeds_after(back->implant->acts_until(9.0)).size(), 1u);
