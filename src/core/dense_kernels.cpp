@@ -366,7 +366,12 @@ void subtract_product(Eigen::Ref<MatX> C, const Eigen::Ref<const MatX>& A, const
 
 void subtract_symmetric_product(Eigen::Ref<MatX> C, const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& B) {
   constexpr Eigen::Index kColumns = 6;
+  constexpr Eigen::Index kInCache = 256;  // half a megabyte, which is read quickly as a whole
   const Eigen::Index n = A.rows();
+  if (n <= kInCache) {
+    subtract_product(C, A, B);
+    return;
+  }
   for (Eigen::Index k = 0; k < n; k += kTile) {
     const Eigen::Index nk = std::min(kTile, n - k);
     const Eigen::Index below = n - k - nk;

@@ -20,8 +20,8 @@ constexpr Eigen::Index column_length(Eigen::Index rows) { return (rows + 3) / 4 
 /// C ← C − A B. Each element sums over k = 0, 1, … in this order.
 void subtract_product(Eigen::Ref<MatX> C, const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& B);
 
-/// C ← C − A B for a symmetric A, of which the lower triangle and the diagonal tiles are read. Large matrices take half
-/// the time, which goes into reading A.
+/// C ← C − A B for a symmetric A. Of a matrix that is too large for the cache only the lower triangle and the diagonal
+/// tiles are read, in half the time.
 void subtract_symmetric_product(Eigen::Ref<MatX> C, const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& B);
 
 /// C ← C − A Bᵀ

@@ -51,6 +51,7 @@ void TissueProbe::begin_train(const Simulation& simulation) {
   search_.reset();
   left_ = in_tissue ? 0 : order.seeds;
   now_.order = order.number;
+  now_.began_at_mm = step.base_depth_mm;
   now_.drop_count = order.seeds;
   for (std::size_t k = 0; k < order.seeds; ++k) {
     const double beyond = order.beyond_tip_mm[k];

@@ -115,6 +115,7 @@ void LiveRun::record_step(const std::optional<Step>& step) {
 
 void LiveRun::record_implant(const LiveImplant& implant, bool score_is_current) {
   const SeedJournal::News news = journal_.news(implant, score_is_current, time_s_);
+  if (!news.acts.empty()) record_next_picture();
   for (const SeedAct& act : news.acts) {
     if (recorder_) record(recorder_->add_act(act));
   }
@@ -146,7 +147,7 @@ void LiveRun::pump(const std::function<void(const LiveEvent&)>& tell) {
       const std::string region = e.region < 0 ? std::string() : regions[static_cast<std::size_t>(e.region)];
       if (recorder_) record(recorder_->add_event({e.kind, e.time_s, e.depth_mm, e.force_N, region}));
       tell({to_string(e.kind), e.time_s, e.depth_mm, e.force_N, region});
-      next_frame_s_ = 0.0;  // record a frame of the event
+      record_next_picture();
     }
   }
 }

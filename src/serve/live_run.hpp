@@ -73,8 +73,10 @@ class LiveRun {
   [[nodiscard]] RealtimeRunner& runner() { return *runner_; }
   /// Drops and follows the seeds of an implant.
   [[nodiscard]] SeedFollower& seeds() { return seeds_; }
-  /// Records what has changed of the implant since the last call (SeedJournal::news()).
+  /// Records what has changed of the implant since the last call (SeedJournal::news()), and the next picture.
   void record_implant(const LiveImplant& implant, bool score_is_current);
+  /// Records a frame of the next picture, although the last one was recorded a short time ago.
+  void record_next_picture() { next_frame_s_ = 0.0; }
 
   /// The hand at a page; null if another device moves the needle.
   [[nodiscard]] const std::shared_ptr<PageDevice>& hand() const { return hand_; }
@@ -85,8 +87,6 @@ class LiveRun {
   void stop_recording(const std::string& why);
   [[nodiscard]] const std::string& recording_problem() const { return problem_; }
   [[nodiscard]] double time_s() const { return time_s_; }
-  /// Depth of the base in the last picture.
-  [[nodiscard]] double depth_mm() const { return runner_->snapshot().step.base_depth_mm; }
   /// Regions that contained the needle in the last picture, the region of the tip first.
   [[nodiscard]] std::vector<std::string> inside() const;
 

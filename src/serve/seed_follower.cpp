@@ -29,6 +29,13 @@ void SeedFollower::call_off() {
   if (dropping_ > 0) order_train({}, 0.0);
 }
 
+std::optional<double> SeedFollower::began_at_mm() {
+  probe_->fetch();
+  const TissueProbe::Answer& answer = probe_->answer();
+  if (dropping_ == 0 || answer.order != ordered_) return std::nullopt;
+  return answer.began_at_mm;
+}
+
 std::optional<ProbedDrop> SeedFollower::take_drop() {
   probe_->fetch();
   const TissueProbe::Answer& answer = probe_->answer();

@@ -29,6 +29,9 @@ class SeedFollower {
   void call_off();
   /// Number of seeds that have been ordered and not been taken.
   [[nodiscard]] std::size_t dropping() const { return dropping_; }
+  /// Depth of the base [mm] at which the loop has begun what was ordered; empty: nothing is being dropped, or the loop
+  /// has not taken up the order.
+  [[nodiscard]] std::optional<double> began_at_mm();
   /// The next of the ordered drops, once the loop has found its place; then it is taken. If the tip was not in the
   /// tissue, the other seeds of the order are not dropped either.
   [[nodiscard]] std::optional<ProbedDrop> take_drop();

@@ -455,7 +455,6 @@ void Session::Parts::keep_needle() {
 void Session::Parts::take_drop() {
   const auto drop = live->seeds().take_drop();
   if (!drop) return;
-  if (live->seeds().dropping() == 0) implant->set_train(std::nullopt);
   const Result<SeedHistory> added = implant->add(*drop);
   if (!added) {
     audience.refuse(dropper, {added.error().where + ": " + added.error().what, added.error().cure});
@@ -480,7 +479,10 @@ void Session::Parts::take_drop() {
 void Session::Parts::follow_implant() {
   std::erase_if(former_implants, [](const auto& former) { return former->models().done(); });
   if (!implant || replay) return;
-  if (live) take_drop();
+  if (live) {
+    take_drop();
+    implant->set_train(implant->is_preloaded() ? live->seeds().began_at_mm() : std::nullopt);
+  }
   ImplantDesk::Changes changes = implant->take_changes();
   if (live && changes.state) live->record_implant(implant->state(), implant->is_score_current());
   if (changes.plan) audience.show(implant->plan());
@@ -510,6 +512,7 @@ void Session::Parts::drop_seed(const Request& request) {
   }
   if (const auto seed = implant->next_seed(); !seed) return refuse(request, seed.error());
   dropper = request.viewer;
+  live->record_next_picture();  // the needle may have come here a moment ago
   const double half_mm = 0.5 * implant->seed_length_mm();
   if (!implant->is_preloaded()) return live->seeds().order_drop(half_mm);
   const std::vector<double> behind = implant->train_mm();
@@ -519,7 +522,6 @@ void Session::Parts::drop_seed(const Request& request) {
               "Set procedure.technique = \"pushed\"");
   }
   live->seeds().order_train(behind, half_mm);
-  implant->set_train(live->depth_mm());
 }
 
 /// Puts a needle of the plan in front of the patient: at once if its model is compiled.
@@ -732,7 +734,6 @@ void Session::Parts::carry_out(const Request& request) {
       }
       if (live && live->seeds().dropping() > 0) {
         live->seeds().call_off();
-        implant->set_train(std::nullopt);
         const bool has_left_some = implant->is_preloaded() && !implant->seeds_of_current().empty();
         if (request.kind == Kind::undo && !has_left_some) break;  // what was being dropped is back in the needle
       }

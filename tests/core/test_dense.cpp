@@ -140,6 +140,20 @@ TEST(DenseProduct, is_subtracted_whatever_the_sizes) {
   }
 }
 
+TEST(DenseProduct, of_a_symmetric_matrix_is_that_of_any_other) {
+  for (const Eigen::Index n : {1, 24, 125, 256, 257, 264, 300}) {
+    MatX A = some_matrix(n, n);
+    A = (A + A.transpose()).eval();
+    for (const Eigen::Index columns : {1, 3, 6, 7}) {
+      const MatX B = some_matrix(n, columns);
+      MatX C = some_matrix(n, columns);
+      const MatX expected = C - A * B;
+      dense::subtract_symmetric_product(C, A, B);
+      EXPECT_LT((C - expected).norm(), 1e-13 * A.norm() * B.norm()) << n << " × " << columns;
+    }
+  }
+}
+
 TEST(DenseProduct, of_small_blocks_is_summed_up) {
   for (const std::size_t count : {0, 1, 2, 7}) {
     std::vector<Mat3> A;

@@ -42,7 +42,8 @@ class TissueProbe {
   static constexpr std::size_t kTrain = 24;   ///< largest number of seeds in a train
 
   struct Answer {
-    std::uint32_t order = 0;  ///< number of the order that `drops` belong to; 0: nothing was ordered
+    std::uint32_t order = 0;   ///< number of the order that `drops` belong to; 0: nothing was ordered
+    double began_at_mm = 0.0;  ///< Step::base_depth_mm after which the order was begun
     std::size_t drop_count = 0;
     std::array<ProbedDrop, kTrain> drops{};  ///< in the order of the train
     std::uint32_t version = 0;               ///< of the watched points (watch())

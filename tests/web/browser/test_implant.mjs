@@ -52,10 +52,11 @@ function info(recordings, needle) {
   return JSON.parse(execFileSync(program, ['info', path.join(recordings, name, 'run.h5'), '--json', '-']));
 }
 
-/** Moves the needle to its next seed with a key and waits until it is in place. */
+/** Moves the needle to its next seed with a key and waits until it is in place and, as a hand does, a moment longer. */
 async function goToSeed() {
   await page.keyboard.press('g');
   await page.locator('.todo.in-place').waitFor();
+  await page.waitForTimeout(300);
 }
 
 test('the plan is shown with its first needle', async () => {
