@@ -129,6 +129,7 @@ TissueParameters default_tissue(const std::string& region, TissuePreset preset) 
   p.friction_coulomb_N_per_m = row->coulomb_N_per_m;
   p.friction_viscous_Ns_per_m2 = 250.0;
   p.source = row->source;
+  p.echo = default_echo(region);
   if (bone) return p;
   if (preset == TissuePreset::linear) {
     p.source += "; friction of bovine liver (Okamura 2004: D 18, C 11 N/m, b 212-293 N s/m2)";

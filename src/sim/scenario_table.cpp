@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scenario_table.hpp"
 
+#include "imaging_entries.hpp"
 #include "scenario_entries.hpp"
 
 namespace stylet {
@@ -104,6 +105,15 @@ void describe_tissue(ScenarioEntries& keys) {
   keys.number("tissue.<region>.friction_viscous_to_mm_per_s", "mm/s", 0.1, 10000,
               "speed up to which sliding friction grows; the viscous part has been measured on slow needles only",
               [](auto& s, const Slot& t) { return &tissue(s, t).friction_viscous_to_mm_per_s; });
+}
+
+void describe_echo(ScenarioEntries& keys) {
+  keys.number("tissue.<region>.echo_dB", "dB", -100, 40,
+              "strength of the speckle in ultrasound, relative to the gland's peripheral zone",
+              [](auto& s, const Slot& t) { return &tissue(s, t).echo.echo_dB; }, {.standard = "by region"});
+  keys.number("tissue.<region>.attenuation_dB_per_cm_MHz", "dB/cm/MHz", 0, 50, "attenuation of ultrasound, one way",
+              [](auto& s, const Slot& t) { return &tissue(s, t).echo.attenuation_dB_per_cm_MHz; },
+              {.standard = "by region"});
 }
 
 void describe_supports(ScenarioEntries& keys) {
@@ -469,6 +479,7 @@ const std::vector<ScenarioEntry>& scenario_table() {
     keys.text("name", "name of this run in the report", [](auto& s, const Slot&) { return &s.name; });
     describe_patient(keys);
     describe_tissue(keys);
+    describe_echo(keys);
     describe_supports(keys);
     describe_anatomy(keys);
     describe_mesh(keys);
@@ -477,6 +488,7 @@ const std::vector<ScenarioEntry>& scenario_table() {
     describe_template(keys);
     describe_insertion(keys);
     describe_implant(keys);
+    describe_imaging(keys);
     describe_run_and_output(keys);
     return std::move(keys).take();
   }();

@@ -3,6 +3,7 @@
 
 #include "stylet/coupling/laws.hpp"
 #include "stylet/geom/mesh_preset.hpp"
+#include "stylet/sim/imaging_settings.hpp"
 
 #include <algorithm>
 #include <array>
@@ -76,6 +77,14 @@ struct Words<NeedleOrder> {
 template <>
 struct Words<NeedlesTogether> {
   static constexpr std::array<std::string_view, 3> all{"one", "row", "all"};
+};
+template <>
+struct Words<ProbeKind> {
+  static constexpr std::array<std::string_view, 3> all{"none", "biplane", "endfire"};
+};
+template <>
+struct Words<UltrasoundArray> {
+  static constexpr std::array<std::string_view, 2> all{"transverse", "sagittal"};
 };
 template <>
 struct Words<Projection> {

@@ -5,6 +5,7 @@
 #include "stylet/core/types.hpp"
 #include "stylet/geom/soft_layers.hpp"
 #include "stylet/sim/choices.hpp"
+#include "stylet/sim/imaging_settings.hpp"
 
 #include <array>
 #include <functional>
@@ -15,7 +16,7 @@
 
 namespace stylet {
 
-/// Mechanical parameters of a tissue and of its interaction with a needle. Every default has a source: see
+/// Parameters of a tissue, of its interaction with a needle and of its pictures. Every default has a source: see
 /// default_tissue().
 struct TissueParameters {
   double young_kPa = 0;
@@ -30,6 +31,7 @@ struct TissueParameters {
   double friction_viscous_Ns_per_m2 = 0;
   double friction_viscous_to_mm_per_s = 50;  ///< speed beyond which sliding friction stays constant
   std::string source;                        ///< where the values come from
+  TissueEcho echo;                           ///< of pictures, not of the mechanics
 
   bool operator==(const TissueParameters&) const = default;
 };
@@ -222,6 +224,9 @@ struct Scenario {
     double half_life_days = 9.3;
     bool operator==(const Oedema&) const = default;
   } oedema;
+  ProbeSettings probe;
+  UltrasoundSettings ultrasound;
+  FluoroscopySettings fluoroscopy;
   struct Run {
     double dt_ms = 1.0;
     bool operator==(const Run&) const = default;
