@@ -11,6 +11,7 @@ namespace stylet {
 struct ShownNeedle {
   std::vector<Vec3> centreline_mm;  ///< LPS, from base to tip, at least two points
   double diameter_mm = 1.27;
+  double lumen_diameter_mm = 1.0;  ///< 0 = the needle is solid
 };
 
 /// A seed in a picture.
