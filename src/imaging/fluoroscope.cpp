@@ -30,12 +30,13 @@ Result<> check_distances(const TetMesh& mesh, const FluoroscopySettings& setting
     farthest = std::max(farthest, depth);
   }
   if (nearest < kRoom_mm)
-    return input_error("fluoroscopy.source_mm",
-                       fmt::format("the source of X-rays, {:g} mm from the detector and {:g} mm from the gland, would be "
-                                   "in the patient or less than {:g} mm from the skin",
-                                   settings.source_mm, unit.source_distance_mm, kRoom_mm),
-                       fmt::format("Give {:.0f} mm or more, or a smaller fluoroscopy.detector_mm",
-                                   std::ceil(settings.source_mm + kRoom_mm - nearest)));
+    return input_error(
+        "fluoroscopy.source_mm",
+        fmt::format("the source of X-rays, {:g} mm from the detector and {:g} mm from the gland, would be "
+                    "in the patient or less than {:g} mm from the skin",
+                    settings.source_mm, unit.source_distance_mm, kRoom_mm),
+        fmt::format("Give {:.0f} mm or more, or a smaller fluoroscopy.detector_mm",
+                    std::ceil(settings.source_mm + kRoom_mm - nearest)));
   const double behind = farthest - unit.source_distance_mm;
   if (behind + kRoom_mm > settings.detector_mm)
     return input_error("fluoroscopy.detector_mm",

@@ -21,8 +21,8 @@ constexpr double kCatheterIodine_mg_per_ml = 100.0;  ///< contrast of 300 mg/ml,
 constexpr double kBulbRadius_mm = 30.0;              ///< radius of the arc of the bulbar urethra
 constexpr std::size_t kArcPoints = 8;
 constexpr double kPointDistance_mm = 4.0;
-constexpr double kFadesOver = 2.0;       ///< layers on each side of a point that have a share in it
-constexpr std::size_t kDirection = 3;    ///< the direction at an end is that over this many points
+constexpr double kFadesOver = 2.0;     ///< layers on each side of a point that have a share in it
+constexpr std::size_t kDirection = 3;  ///< the direction at an end is that over this many points
 
 }  // namespace
 
@@ -85,8 +85,7 @@ void XrayCatheter::add(const XrayGeometry& unit, const Eigen::Matrix3Xf& displac
   if (at_rest_.empty()) return;
   const std::span<Vec3> urethra = std::span(centreline_).subspan(arc_points_);
   std::copy(at_rest_.begin(), at_rest_.end(), urethra.begin());
-  for (const Share& share : shares_)
-    urethra[share.point] += share.weight * displacement.col(share.node).cast<double>();
+  for (const Share& share : shares_) urethra[share.point] += share.weight * displacement.col(share.node).cast<double>();
   const std::size_t last = at_rest_.size() - 1;
   const std::size_t along = std::min(last, kDirection);
   const Vec3 upward = (urethra[last] - urethra[last - along]).normalized();
@@ -96,9 +95,9 @@ void XrayCatheter::add(const XrayGeometry& unit, const Eigen::Matrix3Xf& displac
   const Vec3 anterior = -Vec3::UnitY();
   const Vec3 inward = (anterior - anterior.dot(downward) * downward).normalized();
   for (std::size_t k = 0; k < arc_points_; ++k) {
-    const double turn = 0.5 * std::numbers::pi * static_cast<double>(arc_points_ - k) / static_cast<double>(arc_points_);
-    centreline_[k] =
-        urethra[0] + kBulbRadius_mm * (std::sin(turn) * downward + (1.0 - std::cos(turn)) * inward);
+    const double turn =
+        0.5 * std::numbers::pi * static_cast<double>(arc_points_ - k) / static_cast<double>(arc_points_);
+    centreline_[k] = urethra[0] + kBulbRadius_mm * (std::sin(turn) * downward + (1.0 - std::cos(turn)) * inward);
   }
   add_tube(unit, centreline_, kCatheterLumen_mm, 0.0, contrast_per_mm_, sums);
   if (balloon_)

@@ -9,8 +9,8 @@
 
 namespace stylet {
 
-/// A balloon catheter in the urethra, filled with contrast. It follows the deformed urethra; below the mesh's urethra it
-/// continues in an arc to anterior, as the bulbar urethra does, and its balloon lies in the bladder at the urethra's
+/// A balloon catheter in the urethra, filled with contrast. It follows the deformed urethra; below the mesh's urethra
+/// it continues in an arc to anterior, as the bulbar urethra does, and its balloon lies in the bladder at the urethra's
 /// upper end.
 class XrayCatheter {
  public:
@@ -32,10 +32,10 @@ class XrayCatheter {
   double contrast_per_mm_ = 0.0;  ///< what the contrast adds to tissue [1/mm]
   double balloon_per_mm_ = 0.0;   ///< what the balloon adds to the filling of the bladder [1/mm]
   std::size_t arc_points_ = 0;
-  double end_mm_ = 0.0;            ///< distance of the uppermost point to the urethra's upper end
-  std::vector<Vec3> at_rest_;      ///< [mm] LPS of the points in the urethra, from inferior to superior
-  std::vector<Share> shares_;      ///< of the displacement of these points
-  std::vector<Vec3> centreline_;   ///< [mm] LPS, in the picture that is being made: the arc, then the urethra
+  double end_mm_ = 0.0;           ///< distance of the uppermost point to the urethra's upper end
+  std::vector<Vec3> at_rest_;     ///< [mm] LPS of the points in the urethra, from inferior to superior
+  std::vector<Share> shares_;     ///< of the displacement of these points
+  std::vector<Vec3> centreline_;  ///< [mm] LPS, in the picture that is being made: the arc, then the urethra
 };
 
 }  // namespace stylet

@@ -80,7 +80,8 @@ void for_pixels_near(const XrayGeometry& unit, const Vec3& from, const Vec3& to,
   const auto a = unit.place(from);
   const auto b = unit.place(to);
   const double margin =
-      radius * unit.source_distance_mm / (std::max(1.0, std::min(a.depth_mm, b.depth_mm) - radius) * unit.pixel_mm) + 1.0;
+      radius * unit.source_distance_mm / (std::max(1.0, std::min(a.depth_mm, b.depth_mm) - radius) * unit.pixel_mm) +
+      1.0;
   const auto clipped = [&](double value) {
     return static_cast<int>(std::clamp(value, -1.0, static_cast<double>(unit.pixels)));
   };
@@ -167,27 +168,27 @@ void add_seed(const XrayGeometry& unit, const ShownSeed& seed, const SeedAttenua
   const double half = std::max(0.0, 0.5 * seed.length_mm - radius);
   const Vec3 core_end = 0.5 * kCoreOfLength * seed.length_mm * seed.axis;
   // The seed is dense and thinner than a pixel, so that the mean of the transmission counts and not that of the length.
-  for_pixels_near(unit, seed.centre_mm - half * seed.axis, seed.centre_mm + half * seed.axis, radius,
-                  [&](int column, int row) {
-    const double oblique = unit.ray(column, row).norm();
-    double transmission = 0.0;
-    for_rays_of(unit, column, row, [&](const XrayLine& ray) {
-      const DepthInterval capsule = in_capsule(ray, seed.centre_mm, seed.axis, half, radius);
-      double sum = 0.0;
-      if (capsule.length() > 0.0) {
-        const DepthInterval hollow = in_capsule(ray, seed.centre_mm, seed.axis, half, radius - kWall_mm);
-        DepthInterval core = in_cylinder(ray, seed.centre_mm, seed.axis, kCoreOfDiameter * radius);
-        core = behind_plane(core, ray, seed.centre_mm + core_end, seed.axis);
-        core = behind_plane(core, ray, seed.centre_mm - core_end, -seed.axis);
-        sum = attenuation.capsule_per_mm * (capsule.length() - hollow.length()) +
-              attenuation.core_per_mm * core.length();
-      }
-      transmission += std::exp(-oblique * sum);
-    });
-    transmission /= kRaysAlong * kRaysAlong;
-    if (transmission < 1.0)
-      sum_at(unit, sums, column, row) += static_cast<float>(-std::log(transmission) / oblique);
-  });
+  for_pixels_near(
+      unit, seed.centre_mm - half * seed.axis, seed.centre_mm + half * seed.axis, radius, [&](int column, int row) {
+        const double oblique = unit.ray(column, row).norm();
+        double transmission = 0.0;
+        for_rays_of(unit, column, row, [&](const XrayLine& ray) {
+          const DepthInterval capsule = in_capsule(ray, seed.centre_mm, seed.axis, half, radius);
+          double sum = 0.0;
+          if (capsule.length() > 0.0) {
+            const DepthInterval hollow = in_capsule(ray, seed.centre_mm, seed.axis, half, radius - kWall_mm);
+            DepthInterval core = in_cylinder(ray, seed.centre_mm, seed.axis, kCoreOfDiameter * radius);
+            core = behind_plane(core, ray, seed.centre_mm + core_end, seed.axis);
+            core = behind_plane(core, ray, seed.centre_mm - core_end, -seed.axis);
+            sum = attenuation.capsule_per_mm * (capsule.length() - hollow.length()) +
+                  attenuation.core_per_mm * core.length();
+          }
+          transmission += std::exp(-oblique * sum);
+        });
+        transmission /= kRaysAlong * kRaysAlong;
+        if (transmission < 1.0)
+          sum_at(unit, sums, column, row) += static_cast<float>(-std::log(transmission) / oblique);
+      });
 }
 
 }  // namespace stylet

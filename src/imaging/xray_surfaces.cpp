@@ -65,8 +65,8 @@ XraySurfaces::XraySurfaces(const TetMesh& mesh, const FluoroscopySettings& setti
     const bool is_bone_face = bone_inside != (!outer && bone[outside]);
     if (triangle.step_per_mm == 0.0 && !is_bone_face) return;
     if (is_bone_face) {
-      const Vec3 area = (node_at(face.nodes[1]) - node_at(face.nodes[0]))
-                            .cross(node_at(face.nodes[2]) - node_at(face.nodes[0]));
+      const Vec3 area =
+          (node_at(face.nodes[1]) - node_at(face.nodes[0])).cross(node_at(face.nodes[2]) - node_at(face.nodes[0]));
       for (const Index node : face.nodes) normal_of.try_emplace(node, Vec3::Zero()).first->second += area;
       triangle.bone = static_cast<Index>(3 * bone_faces.size());
       bone_faces.push_back(face.nodes);

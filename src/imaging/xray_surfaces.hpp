@@ -40,12 +40,12 @@ class XraySurfaces {
   void add_triangle(const Triangle& triangle, const XrayGeometry& unit, std::span<float> sums);
   [[nodiscard]] double shell_at(const Triangle& triangle, int corner, const XrayGeometry& unit) const;
 
-  double cortex_ = 0.0;              ///< μ · length of the cortex where a ray meets it at a right angle
-  std::vector<Index> nodes_;         ///< node of the mesh of each corner
-  std::vector<Vec3> at_rest_;        ///< [mm] LPS of each corner
-  std::vector<Corner> corners_;      ///< in the picture that is being made
+  double cortex_ = 0.0;          ///< μ · length of the cortex where a ray meets it at a right angle
+  std::vector<Index> nodes_;     ///< node of the mesh of each corner
+  std::vector<Vec3> at_rest_;    ///< [mm] LPS of each corner
+  std::vector<Corner> corners_;  ///< in the picture that is being made
   std::vector<Triangle> triangles_;
-  std::vector<Vec3> bone_normals_;   ///< outward unit normals at the corners of bones' faces, at rest: bones are held
+  std::vector<Vec3> bone_normals_;  ///< outward unit normals at the corners of bones' faces, at rest: bones are held
 };
 
 }  // namespace stylet

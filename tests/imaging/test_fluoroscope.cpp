@@ -51,7 +51,7 @@ double slanted(const Fluoroscope& unit, int column, int row, double depth_mm) {
 TetMesh ball_mesh(double radius, int divisions) {
   TetMesh mesh;
   mesh.regions = {"prostate"};
-  mesh.nodes = {Vec3::Zero(),      Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ(),
+  mesh.nodes = {Vec3::Zero(),   Vec3::UnitX(),  Vec3::UnitY(), Vec3::UnitZ(),
                 -Vec3::UnitX(), -Vec3::UnitY(), -Vec3::UnitZ()};
   std::vector<std::array<Index, 3>> faces{{1, 2, 3}, {2, 4, 3}, {4, 5, 3}, {5, 1, 3},
                                           {2, 1, 6}, {4, 2, 6}, {5, 4, 6}, {1, 5, 6}};
@@ -104,8 +104,9 @@ TEST(Fluoroscope, a_slab_transmits_exactly) {
 
 TEST(Fluoroscope, slabs_of_several_materials_add_up) {
   TetMesh mesh = box_mesh({-200, -40, -200}, {200, 40, 200}, {4, 8, 4}, 0.0);
-  assign_regions(mesh, {"prostate", "bladder", "ischiorectal_fat"},
-                 [](const Vec3& x) { return x.y() < -20 ? 0 : x.y() < 10 ? 1 : 2; });
+  assign_regions(mesh, {"prostate", "bladder", "ischiorectal_fat"}, [](const Vec3& x) {
+    return x.y() < -20 ? 0 : x.y() < 10 ? 1 : 2;
+  });
   const auto unit = unit_for(mesh, quiet());
   unit->expose(moment_at_rest(mesh));
   const double sum = 20.0 * attenuation_per_mm(XrayMaterial::soft_tissue, 60.0) + 30.0 * contrast_per_mm(20.0, 60.0) +
@@ -184,8 +185,9 @@ TEST(Fluoroscope, any_mesh_transmits_as_steps_along_its_rays_do) {
 TEST(Fluoroscope, a_turned_scene_seen_by_the_turned_c_arm_is_the_same_picture) {
   const TetMesh mesh = [] {
     TetMesh box = box_mesh({-50, -40, -30}, {50, 40, 30}, {6, 5, 4}, 0.1);
-    assign_regions(box, {"body", "pubic_arch", "bladder"},
-                   [](const Vec3& x) { return x.x() > 20 ? 1 : x.z() > 8 ? 2 : 0; });
+    assign_regions(box, {"body", "pubic_arch", "bladder"}, [](const Vec3& x) {
+      return x.x() > 20 ? 1 : x.z() > 8 ? 2 : 0;
+    });
     return box;
   }();
   Moment moment = moment_at_rest(mesh);
@@ -333,8 +335,8 @@ TEST_F(Metal, a_seed_darkens_by_its_capsule_and_its_core) {
   settings.energy_keV = 150.0;
   const auto along = exposed(moment);
   const double through = -std::log(transmission_at(*along, 128, 128));
-  const double exact = attenuation_per_mm(XrayMaterial::titanium, 150.0) * 0.1 +
-                       attenuation_per_mm(XrayMaterial::silver, 150.0) * 3.0;
+  const double exact =
+      attenuation_per_mm(XrayMaterial::titanium, 150.0) * 0.1 + attenuation_per_mm(XrayMaterial::silver, 150.0) * 3.0;
   EXPECT_NEAR(through, exact, 0.01 * exact);
 }
 

@@ -12,8 +12,8 @@
 namespace stylet {
 
 /// A fluoroscope: an X-ray unit on a C-arm that shows the deformed patient, needles and seeds in a cone beam of photons
-/// of one energy. Each ray is attenuated by exp(−Σ μ · length) over what it passes; scatter, the spectrum of a tube, the
-/// size of the focal spot and the table are left out. Dense is dark.
+/// of one energy. Each ray is attenuated by exp(−Σ μ · length) over what it passes; scatter, the spectrum of a tube,
+/// the size of the focal spot and the table are left out. Dense is dark.
 ///
 /// Not a medical device: pictures for training and research.
 class Fluoroscope {

@@ -13,8 +13,8 @@ enum class XrayMaterial { water, soft_tissue, muscle, fat, cortical_bone, titani
 /// Density of a material [g/cm³], as in the tables that give its attenuation.
 double density_g_per_cm3(XrayMaterial material);
 
-/// Mass attenuation coefficient μ/ρ [cm²/g], coherent scattering included, interpolated in log-log between the tabulated
-/// energies; absorption edges are kept. Energies outside 20…150 keV get the value at the end of the table.
+/// Mass attenuation coefficient μ/ρ [cm²/g], coherent scattering included, interpolated in log-log between the
+/// tabulated energies; absorption edges are kept. Energies outside 20…150 keV get the value at the end of the table.
 /// @param energy_keV of the photons
 /// Source: Hubbell and Seltzer, NIST Standard Reference Database 126 (doi:10.18434/T4D01F); tissues of ICRU Report 44.
 double mass_attenuation_cm2_per_g(XrayMaterial material, double energy_keV);

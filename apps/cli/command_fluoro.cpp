@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "command.hpp"
+#include "imaged_case.hpp"
+#include "output_path.hpp"
+#include "validators.hpp"
+
+#include "stylet/imaging/fluoroscope.hpp"
+#include "stylet/io/picture_io.hpp"
+#include "stylet/measure/timing.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+namespace stylet::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct FluoroArguments {
+  std::string file;
+  std::string output;
+  std::string seeds;
+  std::optional<double> time_s;
+  std::optional<double> second_keV;
+  std::vector<std::string> settings;
+};
+
+Result<> check_fluoro_output(const FluoroArguments& arguments) {
+  const fs::path path = arguments.output;
+  if (path.extension() != ".png" && path.extension() != ".mha")
+    return input_error(
+        arguments.output.empty() ? "fluoro" : arguments.output,
+        arguments.output.empty() ? "no file for the picture is given" : "the name of a picture ends in .png or .mha",
+        "Give -o picture.png, or -o picture.mha for grey values with their place in the patient");
+  return check_output_file(path);
+}
+
+/// A picture and the processor time that the exposures took.
+struct Exposed {
+  GreyPicture picture;
+  double cpu_ms = 0.0;
+};
+
+Result<Exposed> exposed(const TetMesh& mesh, const Moment& moment, const FluoroscopySettings& settings,
+                        std::optional<double> second_keV) {
+  const auto unit = Fluoroscope::create(mesh, settings);
+  if (!unit) return unit.error();
+  Exposed result;
+  result.cpu_ms = 1e3 * measure::cpu_seconds([&] { (*unit)->expose(moment); });
+  if (!second_keV) {
+    result.picture = (*unit)->picture();
+    return result;
+  }
+  FluoroscopySettings other = settings;
+  other.energy_keV = *second_keV;
+  other.random += 1;  // the photons of the second exposure are other photons
+  const auto second = Fluoroscope::create(mesh, other);
+  if (!second) return second.error();
+  result.cpu_ms += 1e3 * measure::cpu_seconds([&] { (*second)->expose(moment); });
+  auto difference = without_soft_tissue(**unit, **second);
+  if (!difference) return difference.error();
+  result.picture = std::move(*difference);
+  return result;
+}
+
+std::string caption_of(const FluoroscopySettings& s, std::optional<double> second_keV) {
+  std::string text = second_keV
+                         ? fmt::format("X-ray, {:g} keV without soft tissue by {:g} keV", s.energy_keV, *second_keV)
+                         : fmt::format("X-ray, {:g} keV", s.energy_keV);
+  text += fmt::format(", C-arm at {:g}°", s.angle_deg);
+  if (s.cranial_deg != 0.0)
+    text += fmt::format(", {:g}° {}", std::abs(s.cranial_deg), s.cranial_deg > 0.0 ? "cranial" : "caudal");
+  return text;
+}
+
+Result<> run_fluoro(const FluoroArguments& arguments, Console& console) {
+  if (Result<> writable = check_fluoro_output(arguments); !writable) return writable;
+  const auto imaged = open_imaged_case(arguments.file, arguments.settings, console.progress());
+  if (!imaged) return imaged.error();
+  auto moment = imaged_moment(*imaged, arguments.time_s);
+  if (!moment) return moment.error();
+  if (!arguments.seeds.empty()) {
+    if (auto added = add_planned_seeds(*imaged, arguments.seeds, *moment); !added) return added;
+  }
+  const FluoroscopySettings& settings = imaged->scenario.fluoroscopy;
+  const auto result = exposed(imaged->mesh(), *moment, settings, arguments.second_keV);
+  if (!result) return result.error();
+
+  const fs::path path = arguments.output;
+  if (path.has_parent_path()) {
+    if (auto made = make_folder(path.parent_path()); !made) return made;
+  }
+  const GreyPicture& picture = result->picture;
+  const Result<> written =
+      path.extension() == ".png"
+          ? write_picture_png(picture, caption_of(settings, arguments.second_keV), "at the gland", path)
+          : write_picture_mha(picture, path);
+  if (!written) return written;
+  for (const std::string& note : imaged->notes) console.warn(note);
+  console.say(fmt::format(
+      "{}: {} × {} pixels of {:.3f} mm at the gland, {} needle{}, {} seed{}; simulated, not a medical device",
+      path.string(), picture.width, picture.height, picture.pixel_width_mm, moment->needles.size(),
+      moment->needles.size() == 1 ? "" : "s", moment->seeds.size(), moment->seeds.size() == 1 ? "" : "s"));
+  Json json{{"file", path.string()},
+            {"case", arguments.file},
+            {"time_s", moment->time_s},
+            {"angle_deg", settings.angle_deg},
+            {"cranial_deg", settings.cranial_deg},
+            {"energy_keV", settings.energy_keV},
+            {"second_energy_keV", arguments.second_keV ? Json(*arguments.second_keV) : Json()},
+            {"pixels", picture.width},
+            {"mm_per_pixel", picture.pixel_width_mm},
+            {"nodes", imaged->mesh().node_count()},
+            {"needles", moment->needles.size()},
+            {"seeds", moment->seeds.size()},
+            {"cpu_ms", result->cpu_ms},
+            {"notice", kPictureNotice}};
+  return console.write_json(json);
+}
+
+}  // namespace
+
+Command add_fluoro_command(CLI::App& program) {
+  auto arguments = std::make_shared<FluoroArguments>();
+  CLI::App* app = program.add_subcommand(
+      "fluoro", "Make an X-ray picture of the deformed patient with needle and seeds. Not a medical device");
+  app->add_option("CASE", arguments->file,
+                  "Scenario file or saved model, whose patient is shown at rest, or the run.h5 of a recording")
+      ->type_name("SCENARIO.toml|run.h5")
+      ->required();
+  app->add_option("-o,--output", arguments->output,
+                  "Picture: .png with a scale, or .mha with grey values and their place in the patient")
+      ->type_name("FILE");
+  app->add_option("--time", arguments->time_s, "Moment of the recording [s] (default: when the needle is deepest)")
+      ->type_name("S");
+  const auto shorthand = [&](const char* option, const char* key, double low, double high, const char* unit,
+                             const char* meaning) {
+    app->add_option_function<std::string>(
+           option,
+           [arguments, key](const std::string& value) {
+             arguments->settings.push_back(fmt::format("fluoroscopy.{}={}", key, value));
+           },
+           fmt::format("{}; the same as --set fluoroscopy.{}=…", meaning, key))
+        ->type_name(unit)
+        ->check(number_between(low, high, unit));
+  };
+  shorthand("--angle", "angle_deg", -180, 180, "DEG",
+            "Angle of the C-arm; positive = the detector goes to the patient's left");
+  shorthand("--cranial", "cranial_deg", -60, 60, "DEG", "Angle of the C-arm; positive = the detector goes superior");
+  shorthand("--energy", "energy_keV", 20, 150, "KEV", "Energy of the photons");
+  app->add_option("--second-energy", arguments->second_keV,
+                  "Make a second exposure with this higher energy and subtract it, so that soft tissue vanishes")
+      ->type_name("KEV")
+      ->check(number_between(20, 150, "keV"));
+  app->add_option("--seeds", arguments->seeds,
+                  "Also show the seeds of this plan at their planned places in the tissue (DICOM RTPLAN, JSON or CSV)")
+      ->type_name("PLAN");
+  app->add_option("--set", arguments->settings,
+                  "Set a key of the scenario, e.g. --set fluoroscopy.pixels=1024; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  return {app, [arguments](Console& console) { return run_fluoro(*arguments, console); }};
+}
+
+}  // namespace stylet::cli
