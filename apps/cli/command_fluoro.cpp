@@ -69,9 +69,9 @@ std::string caption_of(const FluoroscopySettings& s, std::optional<double> secon
   std::string text = second_keV
                          ? fmt::format("X-ray, {:g} keV without soft tissue by {:g} keV", s.energy_keV, *second_keV)
                          : fmt::format("X-ray, {:g} keV", s.energy_keV);
-  text += fmt::format(", C-arm at {:g}°", s.angle_deg);
+  text += fmt::format(", C-arm at {:g} degrees", s.angle_deg);
   if (s.cranial_deg != 0.0)
-    text += fmt::format(", {:g}° {}", std::abs(s.cranial_deg), s.cranial_deg > 0.0 ? "cranial" : "caudal");
+    text += fmt::format(", {:g} degrees {}", std::abs(s.cranial_deg), s.cranial_deg > 0.0 ? "cranial" : "caudal");
   return text;
 }
 

@@ -118,7 +118,7 @@ const GreyPicture& Fluoroscope::expose(const Moment& moment) {
   for (const ShownSeed& seed : moment.seeds) add_seed(p.unit, seed, p.seed, p.transmission);
   p.transmit();
   p.detector.detect(p.transmission, std::bit_cast<std::uint64_t>(moment.time_s));
-  XrayDetector::shade(p.detector.optical_depth(), p.picture.values);
+  XrayDetector::shade(p.unit.pixels, p.detector.optical_depth(), p.picture.values);
   p.picture.time_s = moment.time_s;
   return p.picture;
 }
@@ -150,7 +150,7 @@ Result<GreyPicture> without_soft_tissue(const Fluoroscope& low, const Fluoroscop
   // Soft tissue is put at an optical depth of 1, so that the window takes it for the patient.
   for (std::size_t k = 0; k < left.size(); ++k) left[k] = 1.0F + a[k] - static_cast<float>(ratio) * b[k];
   GreyPicture picture = low.picture();
-  XrayDetector::shade(left, picture.values);
+  XrayDetector::shade(picture.width, left, picture.values);
   return picture;
 }
 

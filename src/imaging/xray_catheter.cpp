@@ -18,6 +18,7 @@ namespace {
 constexpr double kCatheterLumen_mm = 2.7;
 constexpr double kBalloonRadius_mm = 10.6;
 constexpr double kCatheterIodine_mg_per_ml = 100.0;  ///< contrast of 300 mg/ml, diluted to a third
+constexpr double kBalloonIodine_mg_per_ml = 50.0;    ///< diluted to a sixth
 constexpr double kBulbRadius_mm = 30.0;              ///< radius of the arc of the bulbar urethra
 constexpr std::size_t kArcPoints = 8;
 constexpr double kPointDistance_mm = 4.0;
@@ -78,7 +79,8 @@ XrayCatheter::XrayCatheter(const TetMesh& mesh, const FluoroscopySettings& setti
   const double filling = contrast_per_mm(kCatheterIodine_mg_per_ml, settings.energy_keV);
   contrast_per_mm_ = filling - attenuation_per_mm(XrayMaterial::soft_tissue, settings.energy_keV);
   balloon_ = mesh.region_index("bladder") >= 0;
-  balloon_per_mm_ = filling - region_attenuation_per_mm("bladder", settings);
+  balloon_per_mm_ =
+      contrast_per_mm(kBalloonIodine_mg_per_ml, settings.energy_keV) - region_attenuation_per_mm("bladder", settings);
 }
 
 void XrayCatheter::add(const XrayGeometry& unit, const Eigen::Matrix3Xf& displacement, std::span<float> sums) {

@@ -99,19 +99,28 @@ void XrayDetector::detect(std::span<const float> transmission, std::uint64_t exp
       -Eigen::Map<const Eigen::ArrayXf>(signal_.data(), count).max(kLeastSignal).log();
 }
 
-void XrayDetector::shade(std::span<const float> depths, std::span<std::uint8_t> shades) {
+void XrayDetector::shade(int pixels, std::span<const float> depths, std::span<std::uint8_t> shades) {
   constexpr float kDeepest = 14.0F;
   constexpr float kPatient = 0.25F;  // less than this much optical depth is air
   constexpr std::size_t kBins = 1024;
-  constexpr double kBright = 0.02;
-  constexpr double kDark = 0.995;
+  constexpr double kBright = 0.03;
+  constexpr double kDark = 0.99;
+  constexpr double kFieldRadius = 0.4;  // of the picture's width
   std::array<int, kBins> counts{};
   constexpr float kBinsPerDepth = kBins / kDeepest;
   int total = 0;
-  for (const float depth : depths) {
-    if (depth <= kPatient) continue;
-    ++counts[std::min(kBins - 1, static_cast<std::size_t>(depth * kBinsPerDepth))];
-    ++total;
+  const double middle = 0.5 * (pixels - 1);
+  for (int row = 0; row < pixels; ++row) {
+    const double off = (row - middle) / pixels;
+    const double half = pixels * std::sqrt(std::max(0.0, kFieldRadius * kFieldRadius - off * off));
+    const std::size_t first = static_cast<std::size_t>(row) * static_cast<std::size_t>(pixels);
+    const auto begin = first + static_cast<std::size_t>(std::max(0.0, std::ceil(middle - half)));
+    const auto end = first + static_cast<std::size_t>(std::max(0.0, std::floor(middle + half)));
+    for (std::size_t k = begin; k < end; ++k) {
+      if (depths[k] <= kPatient) continue;
+      ++counts[std::min(kBins - 1, static_cast<std::size_t>(depths[k] * kBinsPerDepth))];
+      ++total;
+    }
   }
   const auto quantile = [&](double share) {
     int below = 0;

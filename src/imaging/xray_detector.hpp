@@ -27,10 +27,11 @@ class XrayDetector {
   /// Of the last detect() (pixels²).
   [[nodiscard]] std::span<const float> optical_depth() const { return depth_; }
 
-  /// Makes grey values of optical depths: white where much comes through, black where little does. The window leaves
-  /// out the brightest 2 and the darkest 0.5 percent of the pixels that are behind the patient. Does not allocate.
-  /// @param depths (pixels²) @param shades (pixels²) overwritten
-  static void shade(std::span<const float> depths, std::span<std::uint8_t> shades);
+  /// Makes grey values of optical depths: white where much comes through, black where little does. As the automatic
+  /// exposure of a C-arm, the window follows a measuring field: a disc in the middle of the picture. Of its pixels
+  /// behind the patient the brightest 3 percent become white and the darkest percent black. Does not allocate.
+  /// @param pixels along a side @param depths (pixels²) @param shades (pixels²) overwritten
+  static void shade(int pixels, std::span<const float> depths, std::span<std::uint8_t> shades);
 
  private:
   void count_photons(std::span<const float> transmission, std::uint64_t exposure);

@@ -305,7 +305,7 @@ TEST_F(Metal, a_needle_darkens_by_the_thickness_of_its_wall) {
 TEST_F(Metal, a_bent_needle_is_nowhere_darker_than_its_pieces) {
   Moment moment = nothing();
   const Vec3 c = centre();
-  const std::vector<Vec3> bent{c - Vec3(2, 0, 30), c, c + Vec3(2, 0, 30)};
+  const std::vector<Vec3> bent{c - Vec3(2, 0, 30), c, c + Vec3(-2, 0, 30)};
   moment.needles.push_back({.centreline_mm = bent, .diameter_mm = 1.27, .lumen_diameter_mm = 0.0});
   const auto unit = exposed(moment);
   double darkest = 1.0;
@@ -384,7 +384,7 @@ TEST(Fluoroscope, the_catheter_and_its_balloon_follow_the_urethra) {
     const double in_urethra = 2.7 * (contrast - attenuation_per_mm(XrayMaterial::soft_tissue, 60.0));
     EXPECT_NEAR(added({shift, 0, -10}), in_urethra, 0.05 * in_urethra) << shift;
     EXPECT_NEAR(added({shift + 8.0, 0, -10}), 0.0, 1e-5) << shift;
-    const double in_balloon = 21.2 * (contrast - contrast_per_mm(20.0, 60.0));
+    const double in_balloon = 21.2 * (contrast_per_mm(50.0, 60.0) - contrast_per_mm(20.0, 60.0));
     EXPECT_NEAR(added({shift, 0, 20.6}), in_balloon, 0.02 * in_balloon) << shift;
   }
 }
