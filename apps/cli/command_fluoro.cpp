@@ -135,6 +135,12 @@ Command add_fluoro_command(CLI::App& program) {
       ->type_name("FILE");
   app->add_option("--time", arguments->time_s, "Moment of the recording [s] (default: when the needle is deepest)")
       ->type_name("S");
+  // Before the short options, which add to the same list.
+  app->add_option("--set", arguments->settings,
+                  "Set a key of the scenario, e.g. --set fluoroscopy.pixels=1024; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   const auto shorthand = [&](const char* option, const char* key, double low, double high, const char* unit,
                              const char* meaning) {
     app->add_option_function<std::string>(
@@ -157,11 +163,6 @@ Command add_fluoro_command(CLI::App& program) {
   app->add_option("--seeds", arguments->seeds,
                   "Also show the seeds of this plan at their planned places in the tissue (DICOM RTPLAN, JSON or CSV)")
       ->type_name("PLAN");
-  app->add_option("--set", arguments->settings,
-                  "Set a key of the scenario, e.g. --set fluoroscopy.pixels=1024; may be repeated")
-      ->type_name("KEY=VALUE")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   return {app, [arguments](Console& console) { return run_fluoro(*arguments, console); }};
 }
 

@@ -105,6 +105,7 @@ void XrayDetector::shade(int pixels, std::span<const float> depths, std::span<st
   constexpr std::size_t kBins = 1024;
   constexpr double kBright = 0.03;
   constexpr double kDark = 0.99;
+  constexpr float kNarrowest = 0.5F;    // a narrower window would show noise and nothing else
   constexpr double kFieldRadius = 0.4;  // of the picture's width
   std::array<int, kBins> counts{};
   constexpr float kBinsPerDepth = kBins / kDeepest;
@@ -131,7 +132,7 @@ void XrayDetector::shade(int pixels, std::span<const float> depths, std::span<st
     return kDeepest;
   };
   const float bright = total > 0 ? quantile(kBright) : 0.0F;
-  const float dark = total > 0 ? std::max(quantile(kDark), bright + 0.1F) : 1.0F;
+  const float dark = total > 0 ? std::max(quantile(kDark), bright + kNarrowest) : 1.0F;
   constexpr float kWhite = 255.0F;
   const float per_depth = kWhite / (dark - bright);
   for (std::size_t k = 0; k < depths.size(); ++k)
