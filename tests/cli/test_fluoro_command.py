@@ -133,19 +133,21 @@ class Fluoro(InFolder):
                     says=["60 keV", "80 keV", "higher"])
 
     def test_seeds_of_a_plan_are_shown(self):
-        seeds = [{"position_mm": [x, 30, 30], "axis": [0, 0, 1]} for x in (20, 40)]
+        seeds = [{"position_mm": [x, 30, 30], "axis": [0, 0, 1]} for x in (5, 55)]
         plan = {"format": "stylet-plan", "version": 1, "units": "mm", "frame": "LPS", "strength_U": 0.5,
                 "source": "i125_6711", "seeds": seeds}
         (self.folder / "plan.json").write_text(json.dumps(plan))
-        quiet = ("--set", "fluoroscopy.photons=0")
-        self.succeed("fluoro", "case.toml", "-o", "without.mha", *quiet)
-        said = self.json_of("fluoro", "case.toml", "-o", "with.mha", "--seeds", "plan.json", *quiet)
+        # Contrast in the middle of the block, so that the tissue at its sides is not the darkest.
+        contrast = BODY.replace('"prostate"', '"bladder"').replace('"body"', '"prostate"')
+        (self.folder / "contrast.toml").write_text(contrast)
+        said = self.json_of("fluoro", "contrast.toml", "-o", "x.mha", "--seeds", "plan.json", "--set",
+                            "fluoroscopy.photons=0")
         self.assertEqual(said["seeds"], 2)
-        values = metaimage(self.folder / "with.mha")[1]
-        pixel = 80 / 128
-        for x in (20, 40):
-            column = round(63.5 + (x - 30) / pixel)
-            self.assertLess(values[64 * 128 + column], values[64 * 128 + 64] - 50, f"the seed at {x} mm")
+        values = metaimage(self.folder / "x.mha")[1]
+        for x in (5, 55):
+            column = round(63.5 + (x - 30) / (80 / 128))
+            beside = values[64 * 128 + column + 3]
+            self.assertLess(min(values[64 * 128 + column - 1:64 * 128 + column + 2]), beside - 50, f"the seed at {x} mm")
         self.refuse("fluoro", "case.toml", "-o", "new.mha", "--seeds", "case.toml", says=["case.toml"])
 
     def test_what_is_wrong_is_refused(self):
