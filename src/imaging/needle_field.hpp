@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/imaging/moment.hpp"
+
+#include <Eigen/Geometry>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace stylet {
+
+/// The displacement right beside a needle that linear elements cannot represent: that of the needle's forces in an
+/// unbounded medium (Kelvinlets), minus its linear interpolation in the element. It ends at kReach_mm from a force.
+class NeedleField {
+ public:
+  static constexpr double kReach_mm = 12.0;
+
+  explicit NeedleField(const TetMesh& mesh);
+
+  /// Replaces the forces. Allocates when there are more than in any earlier call beyond 64.
+  void set(std::span<const ShownForce> forces);
+  [[nodiscard]] bool is_empty() const { return forces_.empty(); }
+  /// Whether the field moves a corner of this tetrahedron.
+  [[nodiscard]] bool reaches(Index tet) const;
+
+  /// Displacement of a node that its nodal value has from this field [mm].
+  [[nodiscard]] Vec3 at_node(Index node) const { return nodes_.col(node).cast<double>(); }
+  /// The field at an undeformed point [mm] LPS.
+  [[nodiscard]] Vec3 at(const Vec3& x) const;
+
+ private:
+  const TetMesh* mesh_;
+  std::vector<ShownForce> forces_;
+  Eigen::Matrix3Xf nodes_;
+  std::vector<std::uint8_t> near_;  ///< (nodes)
+};
+
+}  // namespace stylet
