@@ -28,6 +28,7 @@ Command add_bench_command(CLI::App& program);
 Command add_validate_command(CLI::App& program);
 Command add_dose_command(CLI::App& program);
 Command add_implant_command(CLI::App& program);
+Command add_image_command(CLI::App& program);
 Command add_serve_command(CLI::App& program);
 
 }  // namespace stylet::cli

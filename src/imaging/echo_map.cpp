@@ -2,7 +2,7 @@
 #include "echo_map.hpp"
 
 #include "smooth_noise.hpp"
-#include "tissue_role.hpp"
+#include "stylet/imaging/tissue_role.hpp"
 #include "voxel_grid.hpp"
 
 #include <algorithm>

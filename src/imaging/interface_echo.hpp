@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "tissue_role.hpp"
+#include "stylet/imaging/tissue_role.hpp"
 
 namespace stylet {
 

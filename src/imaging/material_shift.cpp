@@ -41,17 +41,14 @@ void MaterialShift::compute(const UltrasoundBeams& beams, const Moment& moment, 
 /// Solves X + u(X) = x for the undeformed place X near the one that the mesh gives, by fixed-point iteration.
 Vec3 MaterialShift::solve(const UltrasoundBeams& beams, const DeformedSlice& slice, Index tet, const Vec4& weights,
                           const Vec3& x) const {
-  const auto& corners = mesh_->tets[static_cast<std::size_t>(tet)];
-  Eigen::Matrix<double, 3, 4> at_corners;
-  for (std::size_t c = 0; c < 4; ++c) at_corners.col(static_cast<Eigen::Index>(c)) = field_.at_node(corners[c]);
-  if (Vec3 own = field_.at(x); own.isZero() && at_corners.isZero()) return Vec3::Zero();
+  if (field_.beside_mesh(tet, weights, x).isZero()) return Vec3::Zero();
   const Eigen::Matrix<double, 3, 4> gradients = barycentric_gradients(*mesh_, tet);
   const Mat3 back = slice.undeformed_by_deformed(beams, tet);
   Vec3 shift = Vec3::Zero();
   constexpr int kIterations = 4;
   for (int k = 0; k < kIterations; ++k) {
     const Vec4 there = weights + gradients.transpose() * shift;
-    shift = -back * (field_.at(x + shift) - at_corners * there);
+    shift = -back * field_.beside_mesh(tet, there, x + shift);
   }
   return shift;
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "deformed_slice.hpp"
-#include "needle_field.hpp"
+#include "stylet/imaging/needle_field.hpp"
 
 namespace stylet {
 

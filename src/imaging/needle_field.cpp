@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "needle_field.hpp"
+#include "stylet/imaging/needle_field.hpp"
 
 #include "stylet/coupling/near_field/kelvinlet.hpp"
 
@@ -44,6 +44,13 @@ Vec3 NeedleField::at(const Vec3& x) const {
                                   force.along, force.epsilon_mm, Medium{force.shear_MPa, force.poisson});
     sum += share * (kernel * force.force_N);
   }
+  return sum;
+}
+
+Vec3 NeedleField::beside_mesh(Index tet, const Vec4& weights, const Vec3& x) const {
+  Vec3 sum = at(x);
+  const auto& corners = mesh_->tets[static_cast<std::size_t>(tet)];
+  for (std::size_t k = 0; k < 4; ++k) sum -= weights[static_cast<Eigen::Index>(k)] * at_node(corners[k]);
   return sum;
 }
 

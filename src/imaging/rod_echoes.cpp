@@ -13,6 +13,7 @@ namespace stylet {
 namespace {
 
 constexpr double kRodStep_mm = 0.15;  // of the points along a rod
+constexpr double kFacetsWide = 0.7;   // extent of the facets across the lines, in diameters
 constexpr double kTail_mm = 5.0;      // length over which a comet tail falls to 1/e
 
 float amplitude_of(float dB) { return std::pow(10.0F, dB / 20.0F); }
@@ -45,8 +46,8 @@ RodLook needle_look(double diameter_mm) {
           .specular_deg = 16.0,
           .reverberations = 6,
           .reverberation_mm = 0.9 * diameter_mm,
-          .reverberation_share = 0.42F,
-          .tail_share = 0.05F,
+          .reverberation_share = 0.36F,
+          .tail_share = 0.07F,
           .shade = 0.45F};
 }
 
@@ -112,9 +113,12 @@ void RodEchoes::add(std::span<const Vec3> centreline_mm, double diameter_mm, con
       const double tilt = std::asin(std::clamp(std::abs(along_beam), 0.0, 1.0));
       const double off = tilt / (look.specular_deg * std::numbers::pi / 180.0);
       const float mirror = rough + (1.0F - rough) * static_cast<float>(std::exp(-off * off));
-      // A rod that lies across lines fills each of them; where it passes through the slice it is one point.
+      // A rod that lies across lines fills each of them. Where it passes through the slice it is one point, whose
+      // facets lie beside each other on several lines.
       const double in_lines = std::abs(axis.dot(lateral)) / beams.spacing_mm(middle.depth_mm);
-      const double through = std::abs(axis.dot(normal)) / elevation * spread.width_in_lines(middle.depth_mm);
+      const double facets_wide = 1.0 + kFacetsWide * diameter_mm / profile.lateral_mm(middle.depth_mm);
+      const double through =
+          std::abs(axis.dot(normal)) / elevation * spread.width_in_lines(middle.depth_mm) * facets_wide;
       const double deep = std::abs(along_beam) / std::max(1.0, 2.0 * radius);
       const auto share = static_cast<float>(step * std::sqrt(in_lines * in_lines + through * through + deep * deep));
       Vec3 towards = along_beam * axis - beam;  // from the axis to the near side

@@ -25,10 +25,13 @@ class NeedleField {
   /// Whether the field moves a corner of this tetrahedron.
   [[nodiscard]] bool reaches(Index tet) const;
 
-  /// Displacement of a node that its nodal value has from this field [mm].
+  /// The field's part of a node's displacement [mm] LPS.
   [[nodiscard]] Vec3 at_node(Index node) const { return nodes_.col(node).cast<double>(); }
-  /// The field at an undeformed point [mm] LPS.
+  /// Displacement of an undeformed point [mm] LPS by the forces.
   [[nodiscard]] Vec3 at(const Vec3& x) const;
+  /// Displacement [mm] LPS of an undeformed point that the mesh does not show: at() minus its interpolation.
+  /// @param weights of the tetrahedron's corners at x (4)
+  [[nodiscard]] Vec3 beside_mesh(Index tet, const Vec4& weights, const Vec3& x) const;
 
  private:
   const TetMesh* mesh_;
