@@ -29,6 +29,7 @@ Command add_validate_command(CLI::App& program);
 Command add_dose_command(CLI::App& program);
 Command add_implant_command(CLI::App& program);
 Command add_fluoro_command(CLI::App& program);
+Command add_image_command(CLI::App& program);
 Command add_serve_command(CLI::App& program);
 
 }  // namespace stylet::cli

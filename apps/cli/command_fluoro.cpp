@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command.hpp"
-#include "imaged_case.hpp"
 #include "output_path.hpp"
 #include "validators.hpp"
 
 #include "stylet/imaging/fluoroscope.hpp"
 #include "stylet/io/picture_io.hpp"
 #include "stylet/measure/timing.hpp"
+#include "stylet/patient/imaged_patient.hpp"
 
 #include <fmt/format.h>
 
@@ -39,7 +39,7 @@ Result<> check_fluoro_output(const FluoroArguments& arguments) {
 
 /// A picture and the processor time that the exposures took.
 struct Exposed {
-  GreyPicture picture;
+  Picture picture;
   double cpu_ms = 0.0;
 };
 
@@ -77,44 +77,43 @@ std::string caption_of(const FluoroscopySettings& s, std::optional<double> secon
 
 Result<> run_fluoro(const FluoroArguments& arguments, Console& console) {
   if (Result<> writable = check_fluoro_output(arguments); !writable) return writable;
-  const auto imaged = open_imaged_case(arguments.file, arguments.settings, console.progress());
+  auto imaged = imaged_patient(arguments.file, arguments.settings, arguments.time_s, console.progress());
   if (!imaged) return imaged.error();
-  auto moment = imaged_moment(*imaged, arguments.time_s);
-  if (!moment) return moment.error();
   if (!arguments.seeds.empty()) {
-    if (auto added = add_planned_seeds(*imaged, arguments.seeds, *moment); !added) return added;
+    if (auto added = add_planned_seeds(*imaged, arguments.seeds); !added) return added;
   }
+  const Moment& moment = imaged->moment;
   const FluoroscopySettings& settings = imaged->scenario.fluoroscopy;
-  const auto result = exposed(imaged->mesh(), *moment, settings, arguments.second_keV);
+  const auto result = exposed(imaged->mesh, moment, settings, arguments.second_keV);
   if (!result) return result.error();
 
   const fs::path path = arguments.output;
   if (path.has_parent_path()) {
     if (auto made = make_folder(path.parent_path()); !made) return made;
   }
-  const GreyPicture& picture = result->picture;
+  const Picture& picture = result->picture;
   const Result<> written =
       path.extension() == ".png"
           ? write_picture_png(picture, caption_of(settings, arguments.second_keV), "at the gland", path)
-          : write_picture_mha(picture, path);
+          : write_picture_mha(std::span(&picture, 1), picture.mm_per_pixel, path);
   if (!written) return written;
   for (const std::string& note : imaged->notes) console.warn(note);
   console.say(fmt::format(
       "{}: {} × {} pixels of {:.3f} mm at the gland, {} needle{}, {} seed{}; simulated, not a medical device",
-      path.string(), picture.width, picture.height, picture.pixel_width_mm, moment->needles.size(),
-      moment->needles.size() == 1 ? "" : "s", moment->seeds.size(), moment->seeds.size() == 1 ? "" : "s"));
+      path.string(), picture.columns, picture.rows, picture.mm_per_pixel, moment.needles.size(),
+      moment.needles.size() == 1 ? "" : "s", moment.seeds.size(), moment.seeds.size() == 1 ? "" : "s"));
   Json json{{"file", path.string()},
             {"case", arguments.file},
-            {"time_s", moment->time_s},
+            {"time_s", moment.time_s},
             {"angle_deg", settings.angle_deg},
             {"cranial_deg", settings.cranial_deg},
             {"energy_keV", settings.energy_keV},
             {"second_energy_keV", arguments.second_keV ? Json(*arguments.second_keV) : Json()},
-            {"pixels", picture.width},
-            {"mm_per_pixel", picture.pixel_width_mm},
-            {"nodes", imaged->mesh().node_count()},
-            {"needles", moment->needles.size()},
-            {"seeds", moment->seeds.size()},
+            {"pixels", picture.columns},
+            {"mm_per_pixel", picture.mm_per_pixel},
+            {"nodes", imaged->mesh.node_count()},
+            {"needles", moment.needles.size()},
+            {"seeds", moment.seeds.size()},
             {"cpu_ms", result->cpu_ms},
             {"notice", kPictureNotice}};
   return console.write_json(json);

@@ -48,14 +48,14 @@ Result<> check_distances(const TetMesh& mesh, const FluoroscopySettings& setting
 }
 
 /// The empty picture of an X-ray unit, in the plane through its centre.
-GreyPicture picture_of_unit(const XrayGeometry& unit) {
-  GreyPicture picture;
-  picture.width = picture.height = unit.pixels;
-  picture.pixel_width_mm = picture.pixel_height_mm = unit.pixel_mm;
+Picture picture_of_unit(const XrayGeometry& unit) {
+  Picture picture;
+  picture.columns = picture.rows = unit.pixels;
+  picture.mm_per_pixel = unit.pixel_mm;
   picture.right = unit.right;
   picture.down = -unit.up;
-  picture.first_mm = unit.centre_mm - unit.middle() * unit.pixel_mm * (picture.right + picture.down);
-  picture.values.resize(static_cast<std::size_t>(unit.pixels) * static_cast<std::size_t>(unit.pixels));
+  picture.corner_mm = unit.centre_mm - unit.middle() * unit.pixel_mm * (picture.right + picture.down);
+  picture.pixels.resize(static_cast<std::size_t>(unit.pixels) * static_cast<std::size_t>(unit.pixels));
   return picture;
 }
 
@@ -72,7 +72,7 @@ struct Fluoroscope::Parts {
         seed{attenuation_per_mm(XrayMaterial::titanium, s.energy_keV),
              attenuation_per_mm(XrayMaterial::silver, s.energy_keV)},
         picture(picture_of_unit(u)),
-        transmission(picture.values.size()) {}
+        transmission(picture.pixels.size()) {}
 
   /// Turns sums of μ · length along the central ray into the share of photons that come through.
   void transmit() {
@@ -94,7 +94,7 @@ struct Fluoroscope::Parts {
   XrayDetector detector;
   double steel_per_mm;
   SeedAttenuation seed;
-  GreyPicture picture;
+  Picture picture;
   std::vector<float> transmission;  ///< sums of μ · length while a picture is made
 };
 
@@ -107,7 +107,7 @@ Result<std::unique_ptr<Fluoroscope>> Fluoroscope::create(const TetMesh& mesh, co
   return std::unique_ptr<Fluoroscope>(new Fluoroscope(std::make_unique<Parts>(mesh, settings, unit)));
 }
 
-const GreyPicture& Fluoroscope::expose(const Moment& moment) {
+const Picture& Fluoroscope::expose(const Moment& moment) {
   Parts& p = *parts_;
   std::fill(p.transmission.begin(), p.transmission.end(), 0.0F);
   p.surfaces.add(p.unit, moment.displacement, p.transmission);
@@ -118,18 +118,18 @@ const GreyPicture& Fluoroscope::expose(const Moment& moment) {
   for (const ShownSeed& seed : moment.seeds) add_seed(p.unit, seed, p.seed, p.transmission);
   p.transmit();
   p.detector.detect(p.transmission, std::bit_cast<std::uint64_t>(moment.time_s));
-  XrayDetector::shade(p.unit.pixels, p.detector.optical_depth(), p.picture.values);
+  XrayDetector::shade(p.unit.pixels, p.detector.optical_depth(), p.picture.pixels);
   p.picture.time_s = moment.time_s;
   return p.picture;
 }
 
-const GreyPicture& Fluoroscope::picture() const { return parts_->picture; }
+const Picture& Fluoroscope::picture() const { return parts_->picture; }
 std::span<const float> Fluoroscope::transmission() const { return parts_->transmission; }
 std::span<const float> Fluoroscope::optical_depth() const { return parts_->detector.optical_depth(); }
 const XrayGeometry& Fluoroscope::geometry() const { return parts_->unit; }
 const FluoroscopySettings& Fluoroscope::settings() const { return parts_->settings; }
 
-Result<GreyPicture> without_soft_tissue(const Fluoroscope& low, const Fluoroscope& high) {
+Result<Picture> without_soft_tissue(const Fluoroscope& low, const Fluoroscope& high) {
   FluoroscopySettings same = high.settings();
   same.energy_keV = low.settings().energy_keV;
   same.random = low.settings().random;
@@ -149,8 +149,8 @@ Result<GreyPicture> without_soft_tissue(const Fluoroscope& low, const Fluoroscop
   std::vector<float> left(a.size());
   // Soft tissue is put at an optical depth of 1, so that the window takes it for the patient.
   for (std::size_t k = 0; k < left.size(); ++k) left[k] = 1.0F + a[k] - static_cast<float>(ratio) * b[k];
-  GreyPicture picture = low.picture();
-  XrayDetector::shade(picture.width, left, picture.values);
+  Picture picture = low.picture();
+  XrayDetector::shade(picture.columns, left, picture.pixels);
   return picture;
 }
 

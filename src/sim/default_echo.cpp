@@ -15,7 +15,7 @@ struct EchoRow {
 
 // The first row is that of unknown regions.
 constexpr EchoRow kEchoes[] = {
-    {"body", -4, 1.0, "echo stated; attenuation of muscle, 0.96-1.4"},
+    {"body", -4, 0.75, "echo stated; attenuation between fat, 0.63, and muscle, 0.96"},
     {"prostate", 0, 0.5, "reference of the echo; attenuation of soft tissue"},
     {"peripheral_zone", 0, 0.5, "reference of the echo; attenuation of soft tissue"},
     {"transition_zone", -6, 0.5, "echo stated: darker than the peripheral zone; attenuation of soft tissue"},

@@ -425,15 +425,15 @@ TEST(Fluoroscope, the_same_seed_gives_the_same_bits_and_another_one_another_nois
   Moment moment = moment_at_rest(mesh);
   moment.seeds.push_back({.centre_mm = {12, 0, -10}});
   const auto one = unit_for(mesh, settings);
-  const std::vector<std::uint8_t> first = one->expose(moment).values;
-  EXPECT_EQ(one->expose(moment).values, first);
-  EXPECT_EQ(unit_for(mesh, settings)->expose(moment).values, first);
+  const std::vector<std::uint8_t> first = one->expose(moment).pixels;
+  EXPECT_EQ(one->expose(moment).pixels, first);
+  EXPECT_EQ(unit_for(mesh, settings)->expose(moment).pixels, first);
   Moment later = moment;
   later.time_s = 0.04;
-  EXPECT_NE(one->expose(later).values, first) << "the next picture has another noise";
+  EXPECT_NE(one->expose(later).pixels, first) << "the next picture has another noise";
   settings.random = 2;
   const auto other = unit_for(mesh, settings);
-  EXPECT_NE(other->expose(moment).values, first);
+  EXPECT_NE(other->expose(moment).pixels, first);
   one->expose(moment);
   EXPECT_TRUE(std::equal(one->transmission().begin(), one->transmission().end(), other->transmission().begin()));
 }
@@ -456,11 +456,11 @@ TEST(Fluoroscope, dense_is_dark) {
   FluoroscopySettings settings = quiet();
   settings.field_mm = 100.0;
   const auto unit = unit_for(mesh, settings);
-  const GreyPicture& picture = unit->expose(moment_at_rest(mesh));
-  ASSERT_EQ(picture.values.size(), 256U * 256U);
+  const Picture& picture = unit->expose(moment_at_rest(mesh));
+  ASSERT_EQ(picture.pixels.size(), 256U * 256U);
   const auto at = [&](const Vec3& x) {
     const auto place = unit->geometry().place(x);
-    return picture.values[static_cast<std::size_t>(std::lround(place.row)) * 256 +
+    return picture.pixels[static_cast<std::size_t>(std::lround(place.row)) * 256 +
                           static_cast<std::size_t>(std::lround(place.column))];
   };
   EXPECT_EQ(at({45, 0, 0}), 255) << "air";
@@ -473,10 +473,10 @@ TEST(Fluoroscope, the_picture_knows_its_place_in_the_patient) {
   FluoroscopySettings settings = quiet();
   settings.angle_deg = -20.0;
   const auto unit = unit_for(mesh, settings);
-  const GreyPicture& picture = unit->expose(moment_at_rest(mesh));
+  const Picture& picture = unit->expose(moment_at_rest(mesh));
   const XrayGeometry& geometry = unit->geometry();
   for (const auto& [column, row] : {std::pair{0.0, 0.0}, std::pair{255.0, 0.0}, std::pair{17.0, 200.0}}) {
-    const auto place = geometry.place(picture.place_mm(column, row));
+    const auto place = geometry.place(picture.point_mm(column, row));
     EXPECT_NEAR(place.column, column, 1e-9);
     EXPECT_NEAR(place.row, row, 1e-9);
     EXPECT_NEAR(place.depth_mm, geometry.source_distance_mm, 1e-9);
@@ -496,7 +496,7 @@ TEST(Fluoroscope, two_energies_make_soft_tissue_vanish_and_leave_bone) {
   high->expose(moment_at_rest(mesh));
   const auto left = without_soft_tissue(*low, *high);
   ASSERT_TRUE(left) << left.error().message();
-  const auto value = [&](int column, int row) { return left->values[static_cast<std::size_t>(row) * 256 + column]; };
+  const auto value = [&](int column, int row) { return left->pixels[static_cast<std::size_t>(row) * 256 + column]; };
   EXPECT_NEAR(value(10, 10), value(120, 128), 2) << "soft tissue has one grey, though the rays are longer outside";
   EXPECT_LT(value(220, 128) + 100, value(100, 128)) << "bone is darker";
   EXPECT_FALSE(without_soft_tissue(*high, *low));

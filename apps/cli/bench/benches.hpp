@@ -32,6 +32,7 @@ Result<> bench_display_command(const BenchArguments& arguments, Console& console
 Result<> bench_fluoro_command(const BenchArguments& arguments, Console& console);
 Result<> bench_dose_command(const BenchArguments& arguments, Console& console);
 Result<> bench_together_command(const BenchArguments& arguments, Console& console);
+Result<> bench_image_command(const BenchArguments& arguments, Console& console);
 Result<> bench_viewers_command(const BenchArguments& arguments, Console& console);
 
 /// Refuses `--nodes` below `fewest`.

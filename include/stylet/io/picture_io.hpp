@@ -2,26 +2,45 @@
 #pragma once
 
 #include "stylet/core/result.hpp"
-#include "stylet/imaging/grey_picture.hpp"
+#include "stylet/imaging/picture.hpp"
 
+#include <array>
 #include <filesystem>
+#include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace stylet {
 
-/// The line that stands below every picture of a patient.
+/// The line that stands on every picture of a patient.
 inline constexpr const char* kPictureNotice = "simulated; not a medical device";
 
+/// What is drawn on a picture for people. The pixels of a Picture itself stay free of it.
+struct PictureMarks {
+  std::optional<double> surface_row;             ///< row at the depth 0: a scale in cm goes up from it; empty: no scale
+  std::vector<std::array<double, 2>> dots = {};  ///< places (column, row)
+  std::string title;                             ///< above the picture; empty: none
+  std::string notice;                            ///< below the picture; empty: none
+};
+
+/// Writes a picture with its marks as PNG. The file appears whole or not at all.
+/// Errors: a file that cannot be written.
+Result<> write_picture_png(const Picture& picture, const PictureMarks& marks, const std::filesystem::path& path);
+
 /// Writes a picture as PNG with a strip below it: a bar as scale, the caption, and kPictureNotice. A small picture is
-/// enlarged by a whole number, so that there is room for the strip. Pixels must be square.
+/// enlarged by a whole number, so that there is room for the strip.
 /// @param caption words such as "X-ray, 60 keV"; may be empty
 /// @param scale_note words after the length of the bar, such as "at the gland"; may be empty
 /// Errors: a folder that does not exist, errors of the disk; nothing half-written stays.
-Result<> write_picture_png(const GreyPicture& picture, const std::string& caption, const std::string& scale_note,
+Result<> write_picture_png(const Picture& picture, const std::string& caption, const std::string& scale_note,
                            const std::filesystem::path& path);
 
-/// Writes the grey values of a picture and its place in the patient as MetaImage (.mha): one slice of a volume, LPS.
-/// Errors: as write_picture_png().
-Result<> write_picture_mha(const GreyPicture& picture, const std::filesystem::path& path);
+/// Writes pictures of parallel planes as a volume in MetaImage (.mha): grey values of 8 bit, with spacing, origin and
+/// orientation in LPS, as 3D Slicer and ITK read them. The third axis is right × down.
+/// @param pictures of equal size and orientation, along right × down; one gives a volume of one slice
+/// @param distance_mm of the planes; of a single one its thickness
+/// Errors: pictures that do not fit to each other; a file that cannot be written.
+Result<> write_picture_mha(std::span<const Picture> pictures, double distance_mm, const std::filesystem::path& path);
 
 }  // namespace stylet

@@ -9,7 +9,6 @@
 #include <vtkPNGWriter.h>
 #include <vtkStdString.h>
 #include <vtkTextProperty.h>
-#include <vtkmetaio/metaImage.h>
 
 #include <algorithm>
 #include <array>
@@ -94,11 +93,11 @@ double bar_mm(double width_mm) {
 }
 
 /// Puts the picture on the sheet, each pixel as a square of some pixels.
-void put_picture(Sheet& sheet, const GreyPicture& picture, int enlarged) {
-  for (int row = 0; row < picture.height * enlarged; ++row) {
-    for (int column = 0; column < picture.width * enlarged; ++column)
+void put_picture(Sheet& sheet, const Picture& picture, int enlarged) {
+  for (int row = 0; row < picture.rows * enlarged; ++row) {
+    for (int column = 0; column < picture.columns * enlarged; ++column)
       sheet.at(column, row) =
-          picture.values[static_cast<std::size_t>(row / enlarged) * static_cast<std::size_t>(picture.width) +
+          picture.pixels[static_cast<std::size_t>(row / enlarged) * static_cast<std::size_t>(picture.columns) +
                          static_cast<std::size_t>(column / enlarged)];
   }
 }
@@ -115,17 +114,17 @@ int put_bar(Sheet& sheet, int left, int middle_row, int length, int line) {
 
 }  // namespace
 
-Result<> write_picture_png(const GreyPicture& picture, const std::string& caption, const std::string& scale_note,
+Result<> write_picture_png(const Picture& picture, const std::string& caption, const std::string& scale_note,
                            const std::filesystem::path& path) {
-  const int enlarged = std::max(1, (kNarrowest + picture.width - 1) / std::max(1, picture.width));
-  const int width = picture.width * enlarged;
+  const int enlarged = std::max(1, (kNarrowest + picture.columns - 1) / std::max(1, picture.columns));
+  const int width = picture.columns * enlarged;
   const int line = width / kRowsPerLine;
-  const int height = picture.height * enlarged;
+  const int height = picture.rows * enlarged;
   Sheet sheet(width, height + 2 * line + line / 2);
   put_picture(sheet, picture, enlarged);
 
-  const double length_mm = bar_mm(picture.width * picture.pixel_width_mm);
-  const int length = static_cast<int>(std::lround(length_mm / picture.pixel_width_mm * enlarged));
+  const double length_mm = bar_mm(picture.columns * picture.mm_per_pixel);
+  const int length = static_cast<int>(std::lround(length_mm / picture.mm_per_pixel * enlarged));
   const int first = height + line / 4 + line / 2;
   const int second = first + line;
   const int behind = put_bar(sheet, line / 2, first, std::min(length, width - line), line);
@@ -144,27 +143,6 @@ Result<> write_picture_png(const GreyPicture& picture, const std::string& captio
     writer->Write();
     std::error_code code;
     if (writer->GetErrorCode() != 0 || std::filesystem::file_size(to, code) == 0 || code)
-      return failure(path.string(), "the picture cannot be written",
-                     "Check the space and the permissions of its folder");
-    return Ok{};
-  });
-}
-
-Result<> write_picture_mha(const GreyPicture& picture, const std::filesystem::path& path) {
-  return detail::write_whole(path, [&](const std::filesystem::path& to) -> Result<> {
-    const std::array<int, 3> size{picture.width, picture.height, 1};
-    const std::array<double, 3> spacing{picture.pixel_width_mm, picture.pixel_height_mm, picture.pixel_width_mm};
-    std::vector<std::uint8_t> values = picture.values;  // MetaIO takes no constant data
-    vtkmetaio::MetaImage image(3, size.data(), spacing.data(), vtkmetaio::MET_UCHAR, 1, values.data());
-    std::array<double, 9> axes{};
-    Eigen::Map<Mat3> columns(axes.data());
-    columns << picture.right, picture.down, picture.right.cross(picture.down);
-    image.TransformMatrix(axes.data());
-    image.Offset(picture.first_mm.data());
-    image.AnatomicalOrientation("RAI");  // the file's way to say LPS: the first axis runs from right to left
-    image.Comment(kPictureNotice);
-    image.CompressedData(true);
-    if (!image.Write(to.c_str()))
       return failure(path.string(), "the picture cannot be written",
                      "Check the space and the permissions of its folder");
     return Ok{};

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "command.hpp"
+#include "output_path.hpp"
+#include "validators.hpp"
+
+#include "stylet/geom/centroid.hpp"
+#include "stylet/imaging/scan_conversion.hpp"
+#include "stylet/imaging/ultrasound_scanner.hpp"
+#include "stylet/io/picture_io.hpp"
+#include "stylet/measure/timing.hpp"
+#include "stylet/patient/imaged_patient.hpp"
+#include "stylet/probe/probe_place.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace stylet::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kNotice = "simulated; not a medical device";
+
+struct ImageArguments {
+  std::string file, output, array;
+  std::vector<std::string> settings;
+  double z_mm = std::numeric_limits<double>::quiet_NaN();
+  double time_s = std::numeric_limits<double>::quiet_NaN();
+  double pixel_mm = 0.2;
+  bool all = false, grid = false;
+};
+
+/// A picture that has been made, and where.
+struct MadePicture {
+  Picture picture;
+  UltrasoundBeams beams;
+  double z_mm = 0.0;
+  double cpu_ms = 0.0;
+};
+
+const char* name_of(UltrasoundArray array) { return array == UltrasoundArray::transverse ? "transverse" : "sagittal"; }
+
+std::optional<double> given(double value) { return std::isnan(value) ? std::nullopt : std::optional<double>(value); }
+
+Result<> check_arguments(const ImageArguments& arguments) {
+  const std::string ending = fs::path(arguments.output).extension().string();
+  if (ending != ".png" && ending != ".mha")
+    return input_error(arguments.output, fmt::format("the ending '{}' names no format of pictures", ending),
+                       "Give a name that ends in .png or .mha");
+  if (arguments.grid && ending == ".mha")
+    return input_error("--template", "a volume has no marks", "Leave --template out, or write a .png file");
+  if (arguments.all && given(arguments.z_mm))
+    return input_error("--z", "with --all the planes go through the whole gland", "Leave out --z or --all");
+  return check_output_file(arguments.output);
+}
+
+/// The depths of the stepper at which its planes meet the gland, from apex to base [mm] LPS.
+std::vector<double> planes_through(const ImagedPatient& patient, double step_mm) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (std::size_t t = 0; t < patient.mesh.tets.size(); ++t) {
+    const auto& glands = patient.gland_regions;
+    if (std::find(glands.begin(), glands.end(), patient.mesh.tet_region[t]) == glands.end()) continue;
+    for (const Index node : patient.mesh.tets[t]) {
+      const double z = patient.mesh.nodes[static_cast<std::size_t>(node)].z();
+      low = std::min(low, z);
+      high = std::max(high, z);
+    }
+  }
+  // The planes count from the base, where a plan of the stepper begins.
+  std::vector<double> planes;
+  for (double z = high; z > low - step_mm; z -= step_mm) planes.push_back(z);
+  std::reverse(planes.begin(), planes.end());
+  return planes;
+}
+
+PictureMarks marks_of(const MadePicture& made, const ImageArguments& arguments, const ImagedPatient& patient,
+                      UltrasoundArray array) {
+  PictureMarks marks;
+  const Picture& picture = made.picture;
+  const auto place = [&](const Vec3& x) {
+    const Vec3 from = (x - picture.corner_mm) / picture.mm_per_pixel;
+    return std::array<double, 2>{from.dot(picture.right), from.dot(picture.down)};
+  };
+  marks.surface_row = place(made.beams.point_mm(0.5 * (made.beams.lines - 1), 0.0))[1];
+  marks.title = array == UltrasoundArray::transverse
+                    ? fmt::format("transverse, z = {:.1f} mm; R left, L right, anterior up", made.z_mm)
+                    : fmt::format("sagittal, z = {:.1f} mm; superior left, anterior up", made.z_mm);
+  marks.notice = kNotice;
+  if (!arguments.grid) return marks;
+  const TemplateGrid& grid = patient.scenario.grid;
+  const Vec3 target = centroid(patient.mesh, patient.gland_regions);
+  const double x = grid.centre_mm ? (*grid.centre_mm)[0] : target.x();
+  const double y = grid.centre_mm ? (*grid.centre_mm)[1] : target.y();
+  const Vec3 normal = made.beams.normal();
+  for (const std::string& row : grid.rows) {
+    for (const std::string& column : grid.columns) {
+      const auto offset = grid.offset_mm(column + row);
+      if (!offset || std::abs(normal.z()) < 0.5) continue;
+      // Needles through the template run along z.
+      Vec3 hole(x + (*offset)[0], y - (*offset)[1], 0.0);
+      hole.z() = normal.dot(made.beams.origin_mm - hole) / normal.z();
+      marks.dots.push_back(place(hole));
+    }
+  }
+  return marks;
+}
+
+/// Name of picture number k of several: us.png becomes us_01.png.
+fs::path numbered(const fs::path& path, std::size_t k) {
+  return path.parent_path() / fmt::format("{}_{:02}{}", path.stem().string(), k + 1, path.extension().string());
+}
+
+Json rows_of(const Eigen::Matrix4d& matrix) {
+  Json rows = Json::array();
+  for (int i = 0; i < 4; ++i) {
+    Json row = Json::array();
+    for (int k = 0; k < 4; ++k) row.push_back(matrix(i, k));
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+Result<std::vector<MadePicture>> make(const ImageArguments& arguments, const ImagedPatient& patient, ProbeKind kind,
+                                      UltrasoundArray array) {
+  const Result<ProbeSeat> seat = probe_seat(patient.mesh, patient.gland_regions, arguments.file);
+  if (!seat) return seat.error();
+  Result<UltrasoundScanner> scanner =
+      UltrasoundScanner::create(patient.mesh, patient.echoes, patient.scenario.ultrasound);
+  if (!scanner) return scanner.error();
+  ProbeSettings probe = patient.scenario.probe;
+  probe.kind = kind;
+  if (const auto z = given(arguments.z_mm)) probe.depth_mm = *z;
+  std::vector<double> planes{probe.depth_mm.value_or(seat->gland_mm)};
+  if (arguments.all) planes = planes_through(patient, probe.step_mm);
+  ScanConversion conversion(arguments.pixel_mm);
+  std::vector<MadePicture> made;
+  for (const double z : planes) {
+    probe.depth_mm = z;
+    const double before = measure::thread_cpu_s();
+    const PolarPicture polar = scanner->scan(patient.moment, kind, probe_place(probe, *seat), array);
+    const double cpu_ms = 1e3 * (measure::thread_cpu_s() - before);
+    made.push_back({conversion.convert(polar), polar.beams, z, cpu_ms});
+  }
+  return made;
+}
+
+Result<> run_image(const ImageArguments& arguments, Console& console) {
+  if (Result<> checked = check_arguments(arguments); !checked) return checked;
+  const Result<ImagedPatient> patient =
+      imaged_patient(arguments.file, arguments.settings, given(arguments.time_s), console.progress());
+  if (!patient) return patient.error();
+  UltrasoundArray array = patient->scenario.ultrasound.array;
+  if (!arguments.array.empty())
+    array = arguments.array == "sagittal" ? UltrasoundArray::sagittal : UltrasoundArray::transverse;
+  const bool has_probe = patient->scenario.probe.kind != ProbeKind::none;
+  const ProbeKind kind = has_probe ? patient->scenario.probe.kind : ProbeKind::biplane;
+  if (array == UltrasoundArray::sagittal && (arguments.all || arguments.grid))
+    return input_error(arguments.all ? "--all" : "--template", "it belongs to transverse pictures",
+                       "Leave it out, or give --array transverse");
+  const Result<std::vector<MadePicture>> made = make(arguments, *patient, kind, array);
+  if (!made) return made.error();
+  for (const std::string& note : patient->notes) console.warn(note);
+  if (!has_probe)
+    console.detail("The scenario has no probe; the pictures are made as if one of two planes lay in the rectum");
+
+  const fs::path output = arguments.output;
+  const bool volume = output.extension() == ".mha";
+  if (output.has_parent_path())
+    if (Result<> folder = make_folder(output.parent_path()); !folder) return folder;
+  Json pictures = Json::array();
+  for (std::size_t k = 0; k < made->size(); ++k) {
+    const MadePicture& one = (*made)[k];
+    const fs::path path = arguments.all && !volume ? numbered(output, k) : output;
+    if (!volume) {
+      if (Result<> written = write_picture_png(one.picture, marks_of(one, arguments, *patient, array), path); !written)
+        return written;
+    }
+    pictures.push_back({{"file", path.string()},
+                        {"z_mm", one.z_mm},
+                        {"columns", one.picture.columns},
+                        {"rows", one.picture.rows},
+                        {"mm_per_pixel", one.picture.mm_per_pixel},
+                        {"pixel_to_lps", rows_of(one.picture.pixel_to_lps())},
+                        {"cpu_ms", one.cpu_ms}});
+  }
+  if (volume) {
+    std::vector<Picture> planes;
+    for (const MadePicture& one : *made) planes.push_back(one.picture);
+    const double thickness =
+        arguments.all ? patient->scenario.probe.step_mm : patient->scenario.ultrasound.elevation_mm;
+    if (Result<> written = write_picture_mha(planes, thickness, output); !written) return written;
+  }
+  const UltrasoundSettings& settings = patient->scenario.ultrasound;
+  console.say(fmt::format("{} picture{} ({} array, {} lines of {} samples, {:.1f} ms each) → {}", made->size(),
+                          made->size() == 1 ? "" : "s", name_of(array), settings.lines, settings.samples,
+                          made->back().cpu_ms, pictures.back()["file"].get<std::string>()));
+  console.say("The pictures are simulated. Not a medical device.");
+  return console.write_json({{"notice", kNotice},
+                             {"array", name_of(array)},
+                             {"time_s", patient->moment.time_s},
+                             {"nodes", patient->mesh.node_count()},
+                             {"lines", settings.lines},
+                             {"samples", settings.samples},
+                             {"needles", patient->moment.needles.size()},
+                             {"seeds", patient->moment.seeds.size()},
+                             {"pictures", pictures}});
+}
+
+}  // namespace
+
+Command add_image_command(CLI::App& program) {
+  auto arguments = std::make_shared<ImageArguments>();
+  CLI::App* app = program.add_subcommand(
+      "image",
+      "Make ultrasound pictures of a patient at rest, or of a recorded run, as a transrectal probe shows them");
+  app->add_option("CASE", arguments->file,
+                  "Scenario (TOML): the patient at rest, without a needle; or the run.h5 of a run")
+      ->type_name("SCENARIO.toml|run.h5")
+      ->required();
+  app->add_option("-o,--output", arguments->output,
+                  "Picture: .png with a scale, or .mha with its place in the patient; with --all several .png or one "
+                  "volume")
+      ->type_name("FILE")
+      ->required();
+  app->add_option("--array", arguments->array, "Array of the probe (default: ultrasound.array of the scenario)")
+      ->type_name("WORD")
+      ->check(one_of({"transverse", "sagittal"}));
+  app->add_option("--z", arguments->z_mm, "LPS z of the transverse array in mm; the same as --set probe.depth_mm=MM")
+      ->type_name("MM")
+      ->check(number_between(-1e4, 1e4, "mm"));
+  app->add_option("--time", arguments->time_s, "Time of a recorded run in s (default: when the needle was deepest)")
+      ->type_name("S")
+      ->check(number_between(0, 1e6, "s"));
+  app->add_flag("--all", arguments->all, "All planes of the stepper through the gland, probe.step_mm apart");
+  app->add_flag("--template", arguments->grid, "Draw the template's holes as dots on a transverse picture");
+  app->add_option("--pixel", arguments->pixel_mm, "Side of a pixel in mm (default: 0.2)")
+      ->type_name("MM")
+      ->check(number_between(0.05, 2, "mm"));
+  app->add_option("--set", arguments->settings,
+                  "Set a key of the scenario, e.g. --set probe.roll_deg=20; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  return {app, [arguments](Console& console) { return run_image(*arguments, console); }};
+}
+
+}  // namespace stylet::cli

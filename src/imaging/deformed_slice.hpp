@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/geom/tet_mesh.hpp"
+#include "stylet/geom/topology.hpp"
+#include "stylet/imaging/ultrasound_beams.hpp"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace stylet {
+
+/// The part of a line of an ultrasound picture inside one deformed tetrahedron. At the distance r from the probe's
+/// surface the weights of its corners are weights + r · slopes.
+struct BeamSpan {
+  int line = 0;
+  Index tet = -1;
+  double from_mm = 0.0, to_mm = 0.0;  ///< distances from the probe's surface, from < to
+  Vec4 weights, slopes;
+  Index behind = -1;    ///< tetrahedron on the other side of the face through which the line leaves, or -1
+  bool leaves = false;  ///< whether the line leaves at to_mm through a face, before the picture ends
+  double cosine = 0.0;  ///< between the line and the deformed normal of that face
+};
+
+/// Cuts the deformed mesh by the plane of an ultrasound picture, line by line. Does not allocate after construction.
+class DeformedSlice {
+ public:
+  explicit DeformedSlice(const TetMesh& mesh) : mesh_(&mesh), topology_(mesh), places_(3, mesh.node_count()) {}
+
+  [[nodiscard]] const TetMesh& mesh() const { return *mesh_; }
+
+  /// Calls take(const BeamSpan&) for each tetrahedron on each line, tetrahedron by tetrahedron.
+  /// @param displacement (3 × nodes) [mm] LPS
+  template <class Take>
+  void cut(const UltrasoundBeams& beams, const Eigen::Matrix3Xf& displacement, Take&& take) {
+    place(beams, displacement);
+    for (std::size_t t = 0; t < mesh_->tets.size(); ++t) {
+      const auto& corners = mesh_->tets[t];
+      int above = 0;
+      for (const Index node : corners) above += places_(2, node) > 0.0 ? 1 : 0;
+      if (above == 0 || above == 4) continue;
+      one(beams, static_cast<Index>(t), take);
+    }
+  }
+
+  /// Weights of the corners of a tetrahedron at a place in the plane of the last cut (across, ahead) [mm].
+  [[nodiscard]] Vec4 weights(Index tet, const Eigen::Vector2d& in_plane) const;
+  /// Derivative of the undeformed place by the deformed one in a tetrahedron of the last cut (3 × 3, LPS).
+  /// @param beams of the last cut
+  [[nodiscard]] Mat3 undeformed_by_deformed(const UltrasoundBeams& beams, Index tet) const;
+
+ private:
+  struct Lines {
+    int first = 0, last = -1;
+  };
+
+  void place(const UltrasoundBeams& beams, const Eigen::Matrix3Xf& displacement);
+  [[nodiscard]] Lines lines_of(const UltrasoundBeams& beams, const std::array<Index, 4>& corners) const;
+
+  template <class Take>
+  void one(const UltrasoundBeams& beams, Index tet, Take& take) const {
+    const auto& corners = mesh_->tets[static_cast<std::size_t>(tet)];
+    const Lines lines = lines_of(beams, corners);
+    if (lines.first > lines.last) return;
+    const Vec3 p0 = places_.col(corners[0]);
+    Mat3 edges;
+    for (int k = 0; k < 3; ++k) edges.col(k) = places_.col(corners[static_cast<std::size_t>(k) + 1]) - p0;
+    const Mat3 inverse = edges.inverse();
+    if (!inverse.allFinite()) return;
+    Eigen::Matrix<double, 4, 3> gradients;  // of the weights
+    gradients.bottomRows<3>() = inverse;
+    gradients.row(0) = -inverse.colwise().sum();
+    BeamSpan span;
+    span.tet = tet;
+    const double depth = beams.sample_mm * (beams.samples - 1);
+    for (int line = lines.first; line <= lines.last; ++line) {
+      const Eigen::Vector2d start = beams.start_mm(line);
+      const Eigen::Vector2d way = beams.direction(line);
+      span.weights = gradients * (Vec3(start.x(), start.y(), 0.0) - p0);
+      span.weights[0] += 1.0;
+      span.slopes = gradients.leftCols<2>() * way;
+      double from = 0.0, to = depth;
+      int face = -1;
+      for (int k = 0; k < 4; ++k) {
+        const double w = span.weights[k], slope = span.slopes[k];
+        if (slope > 0.0) {
+          from = std::max(from, -w / slope);
+        } else if (slope < 0.0) {
+          if (-w / slope < to) {
+            to = -w / slope;
+            face = k;
+          }
+        } else if (w < 0.0) {
+          to = -1.0;
+        }
+      }
+      if (!(from < to)) continue;
+      span.line = line;
+      span.from_mm = from;
+      span.to_mm = to;
+      span.leaves = face >= 0;
+      span.behind = face >= 0 ? topology_.neighbour[static_cast<std::size_t>(tet)][static_cast<std::size_t>(face)] : -1;
+      span.cosine = face >= 0 ? -span.slopes[face] / gradients.row(face).norm() : 0.0;
+      take(static_cast<const BeamSpan&>(span));
+    }
+  }
+
+  const TetMesh* mesh_;
+  Topology topology_;
+  Eigen::Matrix3Xd places_;
+};
+
+}  // namespace stylet

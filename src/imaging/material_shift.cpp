@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "material_shift.hpp"
+
+namespace stylet {
+
+MaterialShift::MaterialShift(const TetMesh& mesh, int lines, int samples)
+    : mesh_(&mesh),
+      field_(mesh),
+      lines_(lines),
+      samples_(samples),
+      columns_(samples / kSampleStep + 2),
+      grid_(Eigen::Matrix3Xf::Zero(3, static_cast<Eigen::Index>(lines / 2 + 2) * columns_)),
+      touched_(static_cast<std::size_t>(lines / 2 + 2), 0) {}
+
+void MaterialShift::compute(const UltrasoundBeams& beams, const Moment& moment, DeformedSlice& slice) {
+  std::fill(touched_.begin(), touched_.end(), std::uint8_t{0});
+  if (moment.forces.empty()) return;
+  field_.set(moment.forces);
+  // Along the needle, which lies along the sagittal array, the field is smooth.
+  line_step_ = beams.sector ? 2 : 6;
+  grid_.setZero();
+  slice.cut(beams, moment.displacement, [&](const BeamSpan& span) {
+    if (span.line % line_step_ != 0 || !field_.reaches(span.tet)) return;
+    const double spacing = kSampleStep * beams.sample_mm;
+    const int first = static_cast<int>(std::ceil(span.from_mm / spacing));
+    const int last = static_cast<int>(std::floor(span.to_mm / spacing));
+    const int row = span.line / line_step_;
+    for (int k = first; k <= last; ++k) {
+      const Vec4 weights = span.weights + k * spacing * span.slopes;
+      Vec3 x = Vec3::Zero();
+      const auto& corners = mesh_->tets[static_cast<std::size_t>(span.tet)];
+      for (std::size_t c = 0; c < 4; ++c)
+        x += weights[static_cast<Eigen::Index>(c)] * mesh_->nodes[static_cast<std::size_t>(corners[c])];
+      grid_.col(static_cast<Eigen::Index>(row) * columns_ + k) =
+          solve(beams, slice, span.tet, weights, x).cast<float>();
+      touched_[static_cast<std::size_t>(row)] = 1;
+    }
+  });
+}
+
+/// Solves X + u(X) = x for the undeformed place X near the one that the mesh gives, by fixed-point iteration.
+Vec3 MaterialShift::solve(const UltrasoundBeams& beams, const DeformedSlice& slice, Index tet, const Vec4& weights,
+                          const Vec3& x) const {
+  if (field_.beside_mesh(tet, weights, x).isZero()) return Vec3::Zero();
+  const Eigen::Matrix<double, 3, 4> gradients = barycentric_gradients(*mesh_, tet);
+  const Mat3 back = slice.undeformed_by_deformed(beams, tet);
+  Vec3 shift = Vec3::Zero();
+  constexpr int kIterations = 4;
+  for (int k = 0; k < kIterations; ++k) {
+    const Vec4 there = weights + gradients.transpose() * shift;
+    shift = -back * field_.beside_mesh(tet, there, x + shift);
+  }
+  return shift;
+}
+
+bool MaterialShift::touches(int line) const {
+  const auto row = static_cast<std::size_t>(line / line_step_);
+  return touched_[row] != 0 || touched_[row + 1] != 0;
+}
+
+Eigen::Vector3f MaterialShift::at(int line, int sample) const {
+  const int row = line / line_step_, column = sample / kSampleStep;
+  const float across = static_cast<float>(line % line_step_) / static_cast<float>(line_step_);
+  const float along = static_cast<float>(sample % kSampleStep) / static_cast<float>(kSampleStep);
+  const Eigen::Index at = static_cast<Eigen::Index>(row) * columns_ + column;
+  const Eigen::Vector3f near = (1.0F - along) * grid_.col(at) + along * grid_.col(at + 1);
+  const Eigen::Vector3f far = (1.0F - along) * grid_.col(at + columns_) + along * grid_.col(at + columns_ + 1);
+  return (1.0F - across) * near + across * far;
+}
+
+}  // namespace stylet

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "deformed_slice.hpp"
+#include "stylet/imaging/needle_field.hpp"
+
+namespace stylet {
+
+/// How much further the material moved beside the needle than the mesh shows: for places of a picture, the undeformed
+/// place minus the one that the mesh gives. Kept on a grid of some lines and samples, linear in between.
+class MaterialShift {
+ public:
+  MaterialShift(const TetMesh& mesh, int lines, int samples);
+
+  /// @param displacement (3 × nodes) [mm] LPS
+  void compute(const UltrasoundBeams& beams, const Moment& moment, DeformedSlice& slice);
+
+  /// Whether the shift may differ from zero somewhere on a line.
+  [[nodiscard]] bool touches(int line) const;
+  /// The shift [mm] LPS at a sample of a line.
+  [[nodiscard]] Eigen::Vector3f at(int line, int sample) const;
+
+ private:
+  static constexpr int kSampleStep = 5;
+  [[nodiscard]] Vec3 solve(const UltrasoundBeams& beams, const DeformedSlice& slice, Index tet, const Vec4& weights,
+                           const Vec3& x) const;
+
+  const TetMesh* mesh_;
+  NeedleField field_;
+  int line_step_ = 2;
+  int lines_, samples_, columns_;  ///< columns: grid points along a line
+  Eigen::Matrix3Xf grid_;
+  std::vector<std::uint8_t> touched_;  ///< (grid lines)
+};
+
+}  // namespace stylet

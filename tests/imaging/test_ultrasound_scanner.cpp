@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Places in the picture, and what a scan may not do.
+#include "imaged_block.hpp"
+#include "support/count_allocations.hpp"
+
+#include "stylet/geom/locator.hpp"
+#include "stylet/imaging/scan_conversion.hpp"
+#include "stylet/probe/probe_place.hpp"
+
+namespace stylet {
+namespace {
+
+using test::block_beams;
+using test::imaged_block;
+using test::kLevel;
+using test::plain_scanner;
+
+TEST(UltrasoundPicture, shows_twenty_points_of_deformed_tissue_where_the_mesh_has_them) {
+  const TetMesh mesh = imaged_block();
+  const UltrasoundSettings settings;
+  UltrasoundScanner scanner = plain_scanner(mesh, {{0.0, kLevel}}, settings);
+  Moment moment = moment_at_rest(mesh);
+  for (Index node = 0; node < mesh.node_count(); ++node) {
+    const Vec3& x = mesh.nodes[static_cast<std::size_t>(node)];
+    moment.displacement.col(node) = Eigen::Vector3f(static_cast<float>(2.0 * std::sin(x.y() / 15.0)),
+                                                    static_cast<float>(3.0 * std::cos(x.x() / 20.0)),
+                                                    static_cast<float>(1.5 * std::sin(x.x() / 12.0)));
+  }
+  for (const bool sector : {false, true}) {
+    const UltrasoundBeams beams = block_beams(settings, sector);
+    scanner.scan(moment, beams);
+    for (int k = 0; k < 20; ++k) {
+      const int line = 30 + 10 * k, sample = 60 + 20 * k;
+      const Vec3 material = scanner.material_mm(line, sample);
+      // Where the mesh has this material now, by interpolation in the element of the undeformed mesh.
+      const Topology topology(mesh);
+      const Locator locator(mesh, topology);
+      const auto at = locator.find(material);
+      ASSERT_TRUE(at.has_value());
+      Vec3 now = material;
+      for (std::size_t c = 0; c < 4; ++c)
+        now += at->weights[static_cast<Eigen::Index>(c)] *
+               moment.displacement.col(mesh.tets[static_cast<std::size_t>(at->tet)][c]).cast<double>();
+      EXPECT_LT((now - beams.point_mm(line, sample * beams.sample_mm)).norm(), 0.01);
+    }
+  }
+}
+
+TEST(UltrasoundPicture, is_made_without_allocation) {
+  if (!test::AllocationCount::available()) GTEST_SKIP() << "allocations cannot be counted here";
+  const TetMesh mesh = imaged_block({"periprostatic_fat", "prostate"},
+                                    [](const Vec3& x) { return (x - Vec3(0, 35, 0)).norm() < 20 ? 1 : 0; });
+  auto scanner = UltrasoundScanner::create(
+      mesh, std::vector<TissueEcho>{default_echo("periprostatic_fat"), default_echo("prostate")}, {});
+  ASSERT_TRUE(scanner.ok());
+  Moment moment = moment_at_rest(mesh);
+  moment.needles.push_back({{{0, 30, -30}, {1, 32, 20}}, 1.27});
+  moment.seeds.push_back({{5, 30, 0}, Vec3::UnitZ(), 4.5, 0.8});
+  moment.tracks.push_back({{{-5, 30, -20}, {-5, 30, 20}}, 1.27});
+  moment.forces.push_back({{0, 30, 0}, {0, 0, 1}, Vec3::UnitZ(), 4.0, 1.05, 0.005, 0.49});
+  const UltrasoundBeams sector = block_beams({}, true), linear = block_beams({}, false);
+  scanner->scan(moment, sector);
+  const test::AllocationCount count;
+  scanner->scan(moment, linear);
+  scanner->scan(moment, sector);
+  EXPECT_EQ(count.count(), 0);
+}
+
+TEST(UltrasoundPicture, of_inputs_that_do_not_fit_is_refused) {
+  const TetMesh mesh = imaged_block();
+  const auto refused = [&](const std::vector<TissueEcho>& echoes, const UltrasoundSettings& settings) {
+    const auto scanner = UltrasoundScanner::create(mesh, echoes, settings);
+    EXPECT_FALSE(scanner.ok());
+    return scanner ? std::string() : scanner.error().message();
+  };
+  EXPECT_NE(refused({}, {}).find("0 echoes"), std::string::npos);
+  UltrasoundSettings settings;
+  settings.lines = 1;
+  EXPECT_NE(refused({{}}, settings).find("1 lines"), std::string::npos);
+}
+
+TEST(UltrasoundPicture, of_a_place_outside_of_the_patient_is_black) {
+  const TetMesh mesh = imaged_block();
+  UltrasoundScanner scanner = plain_scanner(mesh, {{0.0, kLevel}});
+  UltrasoundBeams beams = block_beams({});
+  beams.origin_mm.z() = 500.0;
+  const PolarPicture picture = scanner.scan(moment_at_rest(mesh), beams);
+  for (const std::uint8_t grey : picture.grey) ASSERT_EQ(grey, 0);
+  EXPECT_FALSE(scanner.material_mm(3, 3).allFinite());
+}
+
+TEST(UltrasoundAnatomy, has_a_transition_zone_that_is_darker_than_the_peripheral_zone) {
+  // A gland of one region: the zone is assumed.
+  const TetMesh mesh = imaged_block({"periprostatic_fat", "prostate"},
+                                    [](const Vec3& x) { return (x - Vec3(0, 35, 0)).norm() < 22 ? 1 : 0; });
+  auto scanner = UltrasoundScanner::create(mesh, std::vector<TissueEcho>{{2.0, kLevel}, {0.0, kLevel}}, {},
+                                           {.anatomy = true, .artefacts = false});
+  ASSERT_TRUE(scanner.ok());
+  UltrasoundBeams beams = block_beams({});
+  // Posterior is +y: look from behind, as the probe does.
+  beams.origin_mm = {0, 100, 0.3};
+  beams.ahead = -Vec3::UnitY();
+  scanner->scan(moment_at_rest(mesh), beams);
+  const double peripheral = test::mean_dB(*scanner, 118, 138, 45.0, 50.0, beams.sample_mm);
+  const double transition = test::mean_dB(*scanner, 105, 150, 64.0, 74.0, beams.sample_mm);
+  EXPECT_LT(transition, peripheral - 3.0);
+}
+
+// --- geometry of the arrays ---------------------------------------------------------------------------------------
+
+ProbePlace place_at(const ProbeSettings& probe) { return probe_place(probe, {{0, 30, -60}, 0.0}); }
+
+TEST(UltrasoundBeams, of_the_transverse_array_lie_across_the_axis_with_the_patients_left_at_the_right) {
+  ProbeSettings probe{.kind = ProbeKind::biplane};
+  const UltrasoundBeams beams = ultrasound_beams(probe.kind, place_at(probe), {}, UltrasoundArray::transverse);
+  EXPECT_LT((beams.across - Vec3::UnitX()).norm(), 1e-12);
+  EXPECT_LT((beams.ahead + Vec3::UnitY()).norm(), 1e-12);
+  const Vec3 middle = beams.point_mm(127.5, 20.0);
+  EXPECT_LT((middle - Vec3(0, 0, 0)).norm(), 1e-9) << middle.transpose();  // 10 mm of radius and 20 mm of depth
+}
+
+TEST(UltrasoundBeams, of_the_sagittal_array_turn_with_the_roll_and_have_superior_at_the_left) {
+  ProbeSettings probe{.kind = ProbeKind::biplane, .roll_deg = 90.0};
+  const UltrasoundBeams beams = ultrasound_beams(probe.kind, place_at(probe), {}, UltrasoundArray::sagittal);
+  EXPECT_LT((beams.across + Vec3::UnitZ()).norm(), 1e-12);
+  EXPECT_LT((beams.ahead - Vec3::UnitX()).norm(), 1e-12) << "to the patient's left";
+  EXPECT_FALSE(beams.sector);
+}
+
+TEST(UltrasoundBeams, of_an_endfire_probe_look_along_its_axis) {
+  ProbeSettings probe{.kind = ProbeKind::endfire};
+  for (const UltrasoundArray array : {UltrasoundArray::sagittal, UltrasoundArray::transverse}) {
+    const UltrasoundBeams beams = ultrasound_beams(probe.kind, place_at(probe), {}, array);
+    EXPECT_LT((beams.ahead - Vec3::UnitZ()).norm(), 1e-12);
+    EXPECT_TRUE(beams.sector);
+  }
+}
+
+TEST(UltrasoundBeams, find_the_line_and_depth_of_their_own_points) {
+  for (const bool sector : {false, true}) {
+    UltrasoundBeams beams = block_beams({}, sector);
+    const BeamPoint at = beams.locate(Vec3(beams.point_mm(33.25, 41.5) + 2.0 * beams.normal()));
+    EXPECT_NEAR(at.line, 33.25, 1e-9);
+    EXPECT_NEAR(at.depth_mm, 41.5, 1e-9);
+    EXPECT_NEAR(at.elevation_mm, 2.0, 1e-9);
+  }
+}
+
+TEST(ScanConversion, puts_an_echo_where_it_is_in_the_patient) {
+  const TetMesh mesh = imaged_block();
+  for (const bool sector : {false, true}) {
+    const UltrasoundBeams beams = block_beams({}, sector);
+    UltrasoundScanner scanner = plain_scanner(mesh, {{-90.0, kLevel}});
+    Moment moment = moment_at_rest(mesh);
+    const Vec3 at(7.0, 41.0, 0.3);
+    moment.tracks.push_back({{at - Vec3(0, 0, 0.1), at + Vec3(0, 0, 0.1)}, 0.01});
+    ScanConversion conversion(0.2);
+    const Picture& picture = conversion.convert(scanner.scan(moment, beams));
+    int best = -1;
+    Vec3 shown = Vec3::Zero();
+    for (int row = 0; row < picture.rows; ++row) {
+      for (int column = 0; column < picture.columns; ++column) {
+        if (picture.at(row, column) <= best) continue;
+        best = picture.at(row, column);
+        shown = picture.point_mm(column, row);
+      }
+    }
+    EXPECT_GT(best, 0);
+    EXPECT_LT((shown - at).norm(), 0.5);
+    const Eigen::Vector4d corner = picture.pixel_to_lps() * Eigen::Vector4d(3, 5, 0, 1);
+    EXPECT_LT((corner.head<3>() - picture.point_mm(3, 5)).norm(), 1e-9);
+  }
+}
+
+TEST(ScanConversion, has_the_probe_at_the_bottom_and_black_beside_the_sector) {
+  const TetMesh mesh = imaged_block();
+  const UltrasoundBeams beams = block_beams({}, true);
+  UltrasoundScanner scanner = plain_scanner(mesh, {{0.0, kLevel}});
+  ScanConversion conversion(0.25);
+  const Picture& picture = conversion.convert(scanner.scan(moment_at_rest(mesh), beams));
+  EXPECT_LT((picture.down + beams.ahead).norm(), 1e-12);
+  EXPECT_EQ(picture.at(0, 0), 0);
+  EXPECT_EQ(picture.at(picture.rows - 1, 0), 0);
+  EXPECT_GT(picture.at(picture.rows / 2, picture.columns / 2), 0);
+}
+
+}  // namespace
+}  // namespace stylet
