@@ -142,7 +142,7 @@ Result<> check_options(const BenchArguments& arguments) {
     std::vector<std::string> taken_by;
   };
   const Option options[] = {
-      {"--nodes", arguments.nodes > 0, {"remesh", "coupling", "scale", "step", "loop", "viewers", "supply", "display"}},
+      {"--nodes", arguments.nodes > 0, {"remesh", "coupling", "scale", "step", "loop", "viewers", "supply", "display", "probe"}},
       {"--contacts", arguments.contacts > 0, {"scale", "loop", "viewers"}},
       {"--needles", arguments.needles > 0, {"together"}},
       {"--steps", arguments.steps > 0, {"scale"}},
@@ -166,6 +166,7 @@ Result<> run_bench(const BenchArguments& arguments, Console& console) {
   if (arguments.what == "loop") return bench_loop_command(arguments, console);
   if (arguments.what == "supply") return bench_supply_command(arguments, console);
   if (arguments.what == "display") return bench_display_command(arguments, console);
+  if (arguments.what == "probe") return bench_probe_command(arguments, console);
   if (arguments.what == "dose") return bench_dose_command(arguments, console);
   if (arguments.what == "together") return bench_together_command(arguments, console);
   if (arguments.what == "viewers") return bench_viewers_command(arguments, console);
@@ -211,15 +212,15 @@ Command add_bench_command(CLI::App& program) {
          "was precomputed; display: time and error of a picture of the deformed patient; viewers: time of the steps of "
          "a live session without viewers and with two viewers; needle: accuracy of the needle models against their "
          "cost; dose: time of the dose rates of 100 seeds at a million points, by the formula and by a table; "
-         "together: "
-         "time of a step while other needles rest in the tissue")
+         "together: time of a step while other needles rest in the tissue; probe: time to find how an ultrasound probe "
+         "presses the rectal wall")
       ->required()
       ->check(one_of({"remesh", "step", "coupling", "scale", "loop", "supply", "display", "viewers", "needle", "dose",
-                      "together"}));
+                      "together", "probe"}));
   app->add_option("--nodes", arguments->nodes,
                   fmt::format("Nodes of the largest mesh: remesh 125 to 4096 (default {}), coupling 500 or more "
-                              "(default {}), scale, supply and display 570 or more (default {}). Nodes of the only "
-                              "mesh: step, loop and viewers 500 or more (default {})",
+                              "(default {}), scale, supply and display 570 or more (default {}), probe 3000 or more "
+                              "(default 20000). Nodes of the only mesh: step, loop and viewers 500 or more (default {})",
                               kRemeshNodes, measure::CouplingBenchOptions{}.largest,
                               measure::ScaleBenchOptions{}.largest, measure::StepBenchOptions{}.nodes))
       ->type_name("N")
