@@ -144,7 +144,7 @@ Result<> check_options(const BenchArguments& arguments) {
   const Option options[] = {
       {"--nodes",
        arguments.nodes > 0,
-       {"remesh", "coupling", "scale", "step", "loop", "viewers", "supply", "display", "image", "fluoro"}},
+       {"remesh", "coupling", "scale", "step", "loop", "viewers", "supply", "display", "image", "fluoro", "probe"}},
       {"--contacts", arguments.contacts > 0, {"scale", "loop", "viewers"}},
       {"--needles", arguments.needles > 0, {"together"}},
       {"--steps", arguments.steps > 0, {"scale"}},
@@ -170,6 +170,7 @@ Result<> run_bench(const BenchArguments& arguments, Console& console) {
   if (arguments.what == "display") return bench_display_command(arguments, console);
   if (arguments.what == "fluoro") return bench_fluoro_command(arguments, console);
   if (arguments.what == "image") return bench_image_command(arguments, console);
+  if (arguments.what == "probe") return bench_probe_command(arguments, console);
   if (arguments.what == "dose") return bench_dose_command(arguments, console);
   if (arguments.what == "together") return bench_together_command(arguments, console);
   if (arguments.what == "viewers") return bench_viewers_command(arguments, console);
@@ -212,21 +213,20 @@ Command add_bench_command(CLI::App& program) {
          "of a step; coupling: force of one insertion against mesh, spacing of contacts and time step, with the near "
          "field and with node addition; scale: time of a step against the number of nodes and contacts; loop: duration "
          "and lateness of the steps of the real-time loop; supply: speeds that a needle can have where no compliance "
-         "was precomputed; display: time and error of a picture of the deformed patient; image: time of an ultrasound "
-         "picture; viewers: time of the steps of "
+         "was precomputed; display: time and error of a picture of the deformed patient; viewers: time of the steps of "
          "a live session without viewers and with two viewers; needle: accuracy of the needle models against their "
          "cost; dose: time of the dose rates of 100 seeds at a million points, by the formula and by a table; "
-         "fluoro: time of an X-ray picture of the deformed patient; "
-         "together: "
-         "time of a step while other needles rest in the tissue")
+         "image: time of an ultrasound picture; fluoro: time of an X-ray picture; probe: time to find how an "
+         "ultrasound "
+         "probe presses the rectal wall; together: time of a step while other needles rest in the tissue")
       ->required()
-      ->check(one_of({"remesh", "step", "coupling", "scale", "loop", "supply", "display", "image", "viewers", "needle",
-                      "dose", "fluoro", "together"}));
+      ->check(one_of({"remesh", "step", "coupling", "scale", "loop", "supply", "display", "image", "fluoro", "probe",
+                      "viewers", "needle", "dose", "together"}));
   app->add_option("--nodes", arguments->nodes,
                   fmt::format("Nodes of the largest mesh: remesh 125 to 4096 (default {}), coupling 500 or more "
-                              "(default {}), scale, supply and display 570 or more (default {}), fluoro 3000 or more "
-                              "(default 20000). Nodes of the only "
-                              "mesh: step, loop and viewers 500 or more (default {}), image 570 or more (default 5000)",
+                              "(default {}), scale, supply and display 570 or more (default {}), fluoro "
+                              "and probe 3000 or more (default 20000). Nodes of the only mesh: step, loop "
+                              "and viewers 500 or more (default {}), image 570 or more (default 5000)",
                               kRemeshNodes, measure::CouplingBenchOptions{}.largest,
                               measure::ScaleBenchOptions{}.largest, measure::StepBenchOptions{}.nodes))
       ->type_name("N")

@@ -265,6 +265,11 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
   for (std::size_t i = warnings.size(); i < summary.warnings.size(); ++i) console.warn(summary.warnings[i]);
   console.say(fmt::format("{}: {} nodes, {} tetrahedra, {}", prepared.model->scenario().name, summary.nodes,
                           summary.tets, prepared.model->info().method));
+  if (result->probe) {
+    Facts probe;
+    for (const ProbeFact& fact : probe_facts(*result->probe)) probe.add(fact.name, fact.text);
+    console.say(probe.text());
+  }
   console.say(summary_text(summary));
   if (result->map) console.say("\n" + map_text(*result->map));
   if (repeats) console.say("Repeated the recording: " + compare_forces(source->steps, result->steps) + ".");

@@ -40,6 +40,11 @@ Result<InsertResult> insert(const PreparedModel& prepared, const std::filesystem
     if (!ways) return ways.error();
     result.map = std::move(*ways);
   }
+  if (scenario.probe.kind != ProbeKind::none) {
+    auto probe = report_probe(*model, settings.where, progress);
+    if (!probe) return probe.error();
+    result.probe = std::move(*probe);
+  }
   if (settings.begin) settings.begin();
   RunInfo info = model->info();
   info.scenario_text = to_toml(scenario);
@@ -48,6 +53,7 @@ Result<InsertResult> insert(const PreparedModel& prepared, const std::filesystem
   Result<std::unique_ptr<ResultsWriter>> writer =
       ResultsWriter::open(folder, info, model->mesh(), [&tissue](const VecX& u) { return tissue.stress(u); });
   if (!writer) return writer.error();
+  if (result.probe) (*writer)->add_probe(*result.probe);
   Recorder recorder(**writer, result.steps);
   Result<Summary> summary = settings.recorded.empty() ? run(model, recorder, progress)
                                                       : run_recorded(model, settings.recorded, recorder, progress);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/sim/scenario.hpp"
 
+#include "room_for_probe.hpp"
+
 #include <span>
 #include <string_view>
 
@@ -144,9 +146,21 @@ TissueParameters default_tissue(const std::string& region, TissuePreset preset) 
   return p;
 }
 
+void make_room_for_probe(TissueParameters& inside) {
+  inside.young_kPa = 0.5;
+  inside.poisson = 0.1;
+  inside.stiffening = 0.0;
+  inside.source =
+      "stated: around a probe the lumen holds gel and gas, which give way and flow off; other values as without a "
+      "probe";
+}
+
 TissueParameters tissue_of(const Scenario& scenario, const std::string& region) {
   const auto given = scenario.tissue.find(region);
-  return given != scenario.tissue.end() ? given->second : default_tissue(region, scenario.tissue_model.preset);
+  if (given != scenario.tissue.end()) return given->second;
+  TissueParameters tissue = default_tissue(region, scenario.tissue_model.preset);
+  if (region == "rectal_lumen" && scenario.probe.kind != ProbeKind::none) make_room_for_probe(tissue);
+  return tissue;
 }
 
 double creep_of(const Scenario& scenario) {

@@ -3,6 +3,7 @@
 
 #include "needle_choice.hpp"
 #include "planning.hpp"
+#include "room_for_probe.hpp"
 #include "stylet/core/nearest_name.hpp"
 #include "stylet/coupling/near_field/needle_kernel.hpp"
 #include "stylet/coupling/paper/dense_inverse.hpp"
@@ -262,7 +263,11 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
   std::vector<Material> materials;
   for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
     const std::string& name = mesh.regions[r];
-    const TissueParameters p = tissue_of(scenario, name);
+    TissueParameters p = tissue_of(scenario, name);
+    if (name == "rectum" && scenario.probe.kind != ProbeKind::none && mesh.region_index("rectal_lumen") < 0 &&
+        scenario.tissue.find(name) == scenario.tissue.end()) {
+      make_room_for_probe(p);  // wall and filling are one region
+    }
     model->tissue_parameters_.push_back(p);
     materials.push_back({p.young_kPa * 1e-3, p.poisson});
     RegionLaws laws;

@@ -30,6 +30,7 @@ Result<> bench_loop_command(const BenchArguments& arguments, Console& console);
 Result<> bench_supply_command(const BenchArguments& arguments, Console& console);
 Result<> bench_display_command(const BenchArguments& arguments, Console& console);
 Result<> bench_fluoro_command(const BenchArguments& arguments, Console& console);
+Result<> bench_probe_command(const BenchArguments& arguments, Console& console);
 Result<> bench_dose_command(const BenchArguments& arguments, Console& console);
 Result<> bench_together_command(const BenchArguments& arguments, Console& console);
 Result<> bench_image_command(const BenchArguments& arguments, Console& console);

@@ -4,6 +4,7 @@
 #include "stylet/core/progress.hpp"
 #include "stylet/core/result.hpp"
 #include "stylet/geom/tet_mesh.hpp"
+#include "stylet/probe/patient_probe.hpp"
 #include "stylet/sim/hole_map.hpp"
 #include "stylet/sim/recording.hpp"
 
@@ -25,6 +26,8 @@ class ResultsWriter {
 
   Result<> add_step(const Step& step);
   Result<> add_frame(const Frame& frame);
+  /// Keeps what the ultrasound probe does; finish() writes it into the report and summary.json.
+  void add_probe(const ProbeReport& probe);
   /// Keeps the map of the template's holes; finish() writes it as map.csv.
   void add_map(HoleMap map);
   /// Writes all files. Progress covers the pictures.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "stylet/patient/prepared_model.hpp"
+#include "stylet/probe/patient_probe.hpp"
 #include "stylet/sim/hole_map.hpp"
 #include "stylet/sim/recording.hpp"
 
@@ -24,9 +25,10 @@ struct InsertSettings {
 
 /// The result of insert(), beside the files that it wrote.
 struct InsertResult {
-  Summary summary;             ///< forces, events, the gland's motion and warnings of the whole run
-  std::vector<Step> steps;     ///< all steps, in order of time
-  std::optional<HoleMap> map;  ///< only with InsertSettings::map
+  Summary summary;                   ///< forces, events, the gland's motion and warnings of the whole run
+  std::vector<Step> steps;           ///< all steps, in order of time
+  std::optional<HoleMap> map;        ///< only with InsertSettings::map
+  std::optional<ProbeReport> probe;  ///< only with a scenario whose probe.kind is not none
 };
 
 /// Carries out all insertions of a model and writes the result folder: report, pictures, tables and the recording

@@ -32,6 +32,7 @@ std::vector<RowSpec> collect() {
                            tip_tracking_rows(),
                            prostate_motion_rows(),
                            in_patients_rows(),
+                           probe_rows(),
                            dose_rows(),
                            implant_rows(),
                            implant_dose_rows()})

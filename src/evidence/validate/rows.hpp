@@ -30,6 +30,7 @@ std::vector<RowSpec> okamura_recording_rows();
 std::vector<RowSpec> tip_tracking_rows();
 std::vector<RowSpec> prostate_motion_rows();
 std::vector<RowSpec> in_patients_rows();
+std::vector<RowSpec> probe_rows();
 std::vector<RowSpec> dose_rows();
 std::vector<RowSpec> implant_rows();
 std::vector<RowSpec> implant_dose_rows();

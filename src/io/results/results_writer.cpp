@@ -52,10 +52,11 @@ Result<> remove_earlier_results(const fs::path& folder) {
 }
 
 /// Writes all files except run.h5, from run.h5 and the summary. Therefore pictures and tables show only recorded data,
-/// with two exceptions: the gland's path, which follows from the recorded forces, and the map of the template's holes.
+/// with three exceptions: the gland's path, which follows from the recorded forces, the map of the template's holes,
+/// and the ultrasound probe.
 Result<> write_from_recording(const fs::path& folder, const Summary& summary,
                               const std::function<MatX(const VecX&)>& stress_of, const Progress& progress,
-                              bool with_pictures, const HoleMap* map) {
+                              bool with_pictures, const HoleMap* map, const ProbeReport* probe) {
   auto run = read_recording(folder / "run.h5");
   if (!run) return run.error();
   if (run->frames.empty()) {
@@ -77,10 +78,10 @@ Result<> write_from_recording(const fs::path& folder, const Summary& summary,
                                           : Pictures{.png = {}, .why_not = {}, .wanted = false};
   if (auto done = write_pictures(pictures, folder / "pictures"); !done) return done;
   report(progress, "report", 0.0);
-  auto page = report_html(*run, regions, moments, pictures, map);
+  auto page = report_html(*run, regions, moments, pictures, map, probe);
   if (!page) return page.error();
   if (auto done = write_file(folder / "report.html", *page); !done) return done;
-  if (auto done = write_file(folder / "summary.json", summary_json(summary)); !done) return done;
+  if (auto done = write_file(folder / "summary.json", summary_json(summary, probe)); !done) return done;
   report(progress, "report", 1.0);
   return Ok{};
 }
@@ -120,6 +121,7 @@ struct ResultsWriter::Parts {
   std::function<MatX(const VecX&)> stress_of;
   Recorder recorder;
   std::optional<HoleMap> map{};  ///< map of the template's holes
+  std::optional<ProbeReport> probe{};
   bool finished = false;
 };
 
@@ -160,6 +162,8 @@ Result<> ResultsWriter::add_frame(const Frame& frame) {
   return parts_->recorder.add_frame(std::move(stored));
 }
 
+void ResultsWriter::add_probe(const ProbeReport& probe) { parts_->probe = probe; }
+
 void ResultsWriter::add_map(HoleMap map) { parts_->map = std::move(map); }
 
 Result<> ResultsWriter::finish(const Summary& summary, const Progress& progress, bool pictures) {
@@ -168,7 +172,7 @@ Result<> ResultsWriter::finish(const Summary& summary, const Progress& progress,
   return guarded(parts_->folder, [&]() -> Result<> {
     if (auto closed = parts_->recorder.close(&summary); !closed) return closed;
     return write_from_recording(parts_->folder, summary, parts_->stress_of, progress, pictures,
-                                parts_->map ? &*parts_->map : nullptr);
+                                parts_->map ? &*parts_->map : nullptr, parts_->probe ? &*parts_->probe : nullptr);
   });
 }
 

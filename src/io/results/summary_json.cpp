@@ -2,6 +2,7 @@
 #include "summary_json.hpp"
 
 #include "gland_json.hpp"
+#include "probe_json.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -38,7 +39,7 @@ double number(const Json& value) {
 
 }  // namespace
 
-std::string summary_json(const Summary& s) {
+std::string summary_json(const Summary& s, const ProbeReport* probe) {
   Json events = Json::array();
   for (const Event& e : s.events) {
     events.push_back({{"kind", to_string(e.kind)},
@@ -87,6 +88,7 @@ std::string summary_json(const Summary& s) {
       {"mesh_changes", changes},
       {"warnings", s.warnings},
   };
+  if (probe) json["probe"] = probe_json(*probe);
   if (s.in_place) json["in_place"] = in_place_json(*s.in_place);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "stylet/core/result.hpp"
+#include "stylet/probe/patient_probe.hpp"
 #include "stylet/sim/recording.hpp"
 
 #include <string>
@@ -10,7 +11,8 @@
 namespace stylet::results {
 
 /// The text of summary.json. Keys and units: docs/results.md. A value that is not finite becomes null.
-std::string summary_json(const Summary& summary);
+/// @param probe the ultrasound probe, for the file beside the report; null if there is none
+std::string summary_json(const Summary& summary, const ProbeReport* probe = nullptr);
 
 /// Reads the text that summary_json() wrote.
 /// @param where name of the text in messages

@@ -97,4 +97,19 @@ inline constexpr double kSigma_mm = 4.0;
 inline constexpr double kLeast = 0.9;
 }  // namespace d90
 
+/// Change of the gland's extents and volume [%] by an endorectal coil, 79 patients. M. Osman et al. 2014. Second hand.
+namespace osman {
+inline constexpr Measured kDepth{-8.6, 7.8};  ///< anterior-posterior
+inline constexpr Measured kWidth{4.5, 5.8};   ///< left-right
+inline constexpr Measured kLength{8.8, 6.9};  ///< superior-inferior
+inline constexpr Measured kVolume{0.6, 5.7};
+}  // namespace osman
+
+/// The same by an endorectal balloon of 50 ml, 44 patients; means. Second hand, not verified.
+namespace balloon50 {
+inline constexpr double kDepth_percent = 15.7;  ///< flatter, 5.5 mm
+inline constexpr double kWidth_percent = 7.7;
+inline constexpr double kLength_percent = 6.3;
+}  // namespace balloon50
+
 }  // namespace stylet::validate::published

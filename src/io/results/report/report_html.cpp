@@ -8,6 +8,7 @@
 #include "report/narrative.hpp"
 #include "report/page_template.hpp"
 #include "report/parameter_tables.hpp"
+#include "report/probe_section.hpp"
 #include "report/report_data.hpp"
 #include "report/text.hpp"
 
@@ -141,7 +142,7 @@ std::string versions(const RunRecording& run) {
 }  // namespace
 
 Result<std::string> report_html(const RunRecording& run, std::span<const RegionView> regions, const Moments& moments,
-                                const Pictures& pictures, const HoleMap* map) {
+                                const Pictures& pictures, const HoleMap* map, const ProbeReport* probe) {
   std::string story, supports;
   for (const std::string& paragraph : tell_what_happened(run, moments)) story += "<p>" + html_prose(paragraph) + "</p>";
   for (const std::string& support : run.info.supports) supports += item(support);
@@ -158,6 +159,7 @@ Result<std::string> report_html(const RunRecording& run, std::span<const RegionV
       {"story", story},
       {"tiles", tiles(run, run.frames[moments.deepest])},
       {"warnings", warning_box(warnings)},
+      {"probe", probe ? probe_section(*probe) : ""},
       {"gland", gland_section(run)},
       {"map", map ? map_section(*map) : ""},
       {"pictures", picture_section(run, regions, moments, pictures)},
