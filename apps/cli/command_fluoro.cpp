@@ -65,7 +65,7 @@ Result<Exposed> exposed(const TetMesh& mesh, const Moment& moment, const Fluoros
   return result;
 }
 
-std::string caption_of(const FluoroscopySettings& s, std::optional<double> second_keV) {
+std::string title_of(const FluoroscopySettings& s, std::optional<double> second_keV) {
   std::string text = second_keV
                          ? fmt::format("X-ray, {:g} keV without soft tissue by {:g} keV", s.energy_keV, *second_keV)
                          : fmt::format("X-ray, {:g} keV", s.energy_keV);
@@ -73,6 +73,14 @@ std::string caption_of(const FluoroscopySettings& s, std::optional<double> secon
   if (s.cranial_deg != 0.0)
     text += fmt::format(", {:g} degrees {}", std::abs(s.cranial_deg), s.cranial_deg > 0.0 ? "cranial" : "caudal");
   return text;
+}
+
+PictureMarks marks_of(const FluoroscopySettings& s, std::optional<double> second_keV) {
+  PictureMarks marks;
+  marks.title = title_of(s, second_keV);
+  marks.notice = kPictureNotice;
+  marks.bar_note = "at the gland";
+  return marks;
 }
 
 Result<> run_fluoro(const FluoroArguments& arguments, Console& console) {
@@ -92,10 +100,9 @@ Result<> run_fluoro(const FluoroArguments& arguments, Console& console) {
     if (auto made = make_folder(path.parent_path()); !made) return made;
   }
   const Picture& picture = result->picture;
-  const Result<> written =
-      path.extension() == ".png"
-          ? write_picture_png(picture, caption_of(settings, arguments.second_keV), "at the gland", path)
-          : write_picture_mha(std::span(&picture, 1), picture.mm_per_pixel, path);
+  const Result<> written = path.extension() == ".png"
+                               ? write_picture_png(picture, marks_of(settings, arguments.second_keV), path)
+                               : write_picture_mha(std::span(&picture, 1), picture.mm_per_pixel, path);
   if (!written) return written;
   for (const std::string& note : imaged->notes) console.warn(note);
   console.say(fmt::format(

@@ -24,8 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kNotice = "simulated; not a medical device";
-
 struct ImageArguments {
   std::string file, output, array;
   std::vector<std::string> settings;
@@ -90,7 +88,7 @@ PictureMarks marks_of(const MadePicture& made, const ImageArguments& arguments, 
   marks.title = array == UltrasoundArray::transverse
                     ? fmt::format("transverse, z = {:.1f} mm; R left, L right, anterior up", made.z_mm)
                     : fmt::format("sagittal, z = {:.1f} mm; superior left, anterior up", made.z_mm);
-  marks.notice = kNotice;
+  marks.notice = kPictureNotice;
   if (!arguments.grid) return marks;
   const TemplateGrid& grid = patient.scenario.grid;
   const Vec3 target = centroid(patient.mesh, patient.gland_regions);
@@ -200,7 +198,7 @@ Result<> run_image(const ImageArguments& arguments, Console& console) {
                           made->size() == 1 ? "" : "s", name_of(array), settings.lines, settings.samples,
                           made->back().cpu_ms, pictures.back()["file"].get<std::string>()));
   console.say("The pictures are simulated. Not a medical device.");
-  return console.write_json({{"notice", kNotice},
+  return console.write_json({{"notice", kPictureNotice},
                              {"array", name_of(array)},
                              {"time_s", patient->moment.time_s},
                              {"nodes", patient->mesh.node_count()},

@@ -80,7 +80,7 @@ void SeedFollower::follow(const DisplayField& field, DisplayField::Load& load) {
   }
 }
 
-std::optional<std::vector<Vec3>> SeedFollower::news() {
+std::vector<Vec3> SeedFollower::now_mm() {
   std::vector<Vec3> now;
   now.reserve(rest_.size());
   for (std::size_t k = 0; k < rest_.size(); ++k) now.emplace_back(rest_[k] + moved_[k]);
@@ -89,6 +89,11 @@ std::optional<std::vector<Vec3>> SeedFollower::news() {
   for (std::size_t k = 0; k < watched_.size() && answer.version == version_; ++k) {
     if (answer.is_known[k]) now[watched_[k]] = vec3(answer.now[k]);
   }
+  return now;
+}
+
+std::optional<std::vector<Vec3>> SeedFollower::news() {
+  std::vector<Vec3> now = now_mm();
   const auto is_still = [&] {
     for (std::size_t k = 0; k < now.size(); ++k) {
       if ((now[k] - told_[k]).norm() > kSeen_mm) return false;

@@ -41,7 +41,9 @@ class SeedFollower {
   void set(std::vector<Vec3> rest_mm, std::vector<std::size_t> own);
   /// Moves the seeds by the displacement of a picture.
   void follow(const DisplayField& field, DisplayField::Load& load);
-  /// Where the seeds are now [mm] LPS; empty if no seed has moved by more than 0.01 mm since the last call.
+  /// Where the seeds are now [mm] LPS.
+  [[nodiscard]] std::vector<Vec3> now_mm();
+  /// The same; empty if no seed has moved by more than 0.01 mm since the last call.
   [[nodiscard]] std::optional<std::vector<Vec3>> news();
 
  private:

@@ -102,6 +102,10 @@ std::optional<Request::Kind> request_kind(wire::Command::Do what) {
       return Request::Kind::clear;
     case predict:
       return Request::Kind::predict;
+    case image:
+      return Request::Kind::image;
+    case set:
+      return Request::Kind::set;
     case take:
     case release:
       break;
@@ -135,6 +139,7 @@ struct Server::Parts final : public Audience, public ViewerDesk {
   /// JSON texts of the plan, what has been carried out of it, and where its seeds are; empty until there is one.
   std::map<wire::Kind, std::string> implant;
   std::shared_ptr<const LiveDose> dose;
+  std::shared_ptr<const LiveImage> image;
   SessionStatus status;
   std::deque<std::string> events;  ///< JSON texts of the events since the start of the insertion
   Session session;
@@ -177,6 +182,12 @@ struct Server::Parts final : public Audience, public ViewerDesk {
       for (const auto& [id, viewer] : each()) viewer->send(dose);
     });
   }
+  void show(std::shared_ptr<const LiveImage> now) override {
+    asio::post(io, [this, now = std::move(now)] {
+      image = now;
+      for (const auto& [id, viewer] : each()) viewer->send(image);
+    });
+  }
   void show_text(wire::Kind kind, std::string text) {
     asio::post(io, [this, kind, text = std::move(text)] {
       implant[kind] = text;
@@ -216,6 +227,7 @@ struct Server::Parts final : public Audience, public ViewerDesk {
     if (!map.empty()) viewer->send(wire::Kind::map, map);
     for (const auto& [kind, text] : implant) viewer->send(kind, text);
     if (dose) viewer->send(dose);
+    if (image) viewer->send(image);
     for (const std::string& event : events) viewer->send(wire::Kind::event, event);
     say_status();
     (void)session.ask({.kind = Request::Kind::greet, .viewer = viewer->id(), .text = {}, .number = 0.0});
@@ -267,6 +279,7 @@ struct Server::Parts final : public Audience, public ViewerDesk {
               {"viewers", viewers.size()},
               {"device", s.device},
               {"device_problem", s.device_problem},
+              {"image", {{"shown", s.image.shown}, {"problem", s.image.problem}, {"stage", s.image.stage}}},
               {"recording", json_of(s.recording)},
               {"replay",
                {{"name", s.replay.name},

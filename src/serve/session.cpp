@@ -3,6 +3,7 @@
 
 #include "field_maker.hpp"
 #include "folder_lock.hpp"
+#include "image_desk.hpp"
 #include "implant_desk.hpp"
 #include "live_run.hpp"
 #include "map_maker.hpp"
@@ -12,6 +13,7 @@
 #include "scene.hpp"
 #include "shelf.hpp"
 
+#include "stylet/io/recorded_moments.hpp"
 #include "stylet/io/scenario_io.hpp"
 #include "stylet/sim/plan.hpp"
 
@@ -100,7 +102,8 @@ struct Session::Parts {
   } planned;
   std::unique_ptr<ImplantDesk> implant;                       ///< of the open case, if it has a plan of seeds
   std::vector<std::unique_ptr<ImplantDesk>> former_implants;  ///< of earlier cases; their threads have not ended
-  std::uint64_t dropper = 0;                                  ///< viewer that has asked for the drop that is under way
+  ImageDesk images;
+  std::uint64_t dropper = 0;  ///< viewer that has asked for the drop that is under way
   std::size_t insertion = 0;
   bool page_has_drawn = false;  ///< some page has drawn its first picture; then a FieldMaker does not wait
   std::unique_ptr<LiveRun> live;
@@ -113,6 +116,7 @@ struct Session::Parts {
   std::vector<LiveEvent> happened;  ///< events of the live run
   std::unique_ptr<Replay> replay;
   std::unique_ptr<ReplayedSeeds> replayed_seeds;  ///< of `replay`, if it has an implant
+  std::unique_ptr<RecordedMoments> moments;       ///< of `replay`, for pictures
   FolderLock replayed;                            ///< keeps the replayed recording from being removed
   SessionStatus status;
   bool whole_curve = true;
@@ -154,6 +158,10 @@ struct Session::Parts {
   void follow_implant();
   void take_drop();
   void show_replayed_seeds();
+  [[nodiscard]] std::vector<ShownSeed> shown_seeds();
+  void open_images();
+  void take_moment();
+  void show_images();
   void end_replay();
   void choose_needle(const Request& request, std::size_t which);
   void use_model(const Request& request, const NeedleModels::Ready& ready);
@@ -266,6 +274,7 @@ void Session::Parts::set_live_aside() {
 /// Ends the replay, if there is one, and shows the implant of the open case again instead of the recorded one.
 void Session::Parts::end_replay() {
   if (!replay) return;
+  moments.reset();
   replayed_seeds.reset();
   replay.reset();
   replayed = {};
@@ -275,6 +284,7 @@ void Session::Parts::end_replay() {
 
 void Session::Parts::back_to_live() {
   end_replay();
+  open_images();
   show_model(insertion);
   SetAside was = std::move(*aside);
   aside.reset();
@@ -381,6 +391,7 @@ void Session::Parts::take_field() {
   keep_needle();
   if (!open.field) return;
   if (live) live->set_field(open.field);
+  open_images();
   if (aside) aside->run->set_field(open.field);
 }
 
@@ -499,6 +510,54 @@ void Session::Parts::show_replayed_seeds() {
   audience.show(replayed_seeds->places());
 }
 
+/// Shows pictures of the patient that is open now, live or recorded.
+void Session::Parts::open_images() {
+  if (replay) {
+    const RunRecording& recording = replay->recording();
+    auto scenario = parse_scenario(recording.info.scenario_text, status.replay.name);
+    if (!scenario) return;  // the replay has begun, so its scenario was read
+    moments = std::make_unique<RecordedMoments>(recording);
+    // A copy of the mesh, since the replay may end while a picture of it is being made.
+    images.open({std::make_shared<const TetMesh>(recording.mesh), *std::move(scenario), recording.info.target_regions});
+    return;
+  }
+  if (!open.model) return;
+  images.open({std::shared_ptr<const TetMesh>(open.model, &open.model->mesh()), planned.scenario,
+               open.model->target_regions(), open.field});
+}
+
+/// The dropped seeds where they are now.
+std::vector<ShownSeed> Session::Parts::shown_seeds() {
+  std::vector<ShownSeed> shown;
+  if (!implant) return shown;
+  const std::vector<SeedHistory>& dropped = implant->state().seeds;
+  const std::vector<Vec3> now = live->seeds().now_mm();
+  for (std::size_t k = 0; k < std::min(now.size(), dropped.size()); ++k) {
+    if (dropped[k].lost) continue;
+    shown.push_back({now[k], dropped[k].axis, implant->plan().seed_length_mm, implant->plan().seed_diameter_mm});
+  }
+  return shown;
+}
+
+/// Passes the newest moment on, if somebody looks at pictures of it.
+void Session::Parts::take_moment() {
+  if (images.shown() == ShownImage::none) return;
+  if (replay) {
+    if (moments) images.take(moments->at(replay->time_s()));
+    return;
+  }
+  if (live) images.take(live->runner().snapshot(), shown_seeds());
+}
+
+/// Shows a new picture to the viewers, and tells them what is missing.
+void Session::Parts::show_images() {
+  if (auto image = images.news()) audience.show(std::move(image));
+  SessionStatus::Image now{to_string(images.shown()), images.problem(), images.stage()};
+  if (now.shown == status.image.shown && now.problem == status.image.problem && now.stage == status.image.stage) return;
+  status.image = std::move(now);
+  next_status = {};
+}
+
 void Session::Parts::drop_seed(const Request& request) {
   const auto no = [&](const std::string& why, const std::string& cure) {
     audience.refuse(request.viewer, {why, cure});
@@ -544,6 +603,7 @@ void Session::Parts::use_model(const Request& request, const NeedleModels::Ready
   const std::unique_ptr<LiveRun> former = std::move(live);
   abandon_field();
   open = {.model = ready.model, .notes = std::move(open.notes), .field = ready.field, .points = {}, .way = 0};
+  open_images();
   show_model(0);
   if (!open.field) {
     field_maker = std::make_unique<FieldMaker>(
@@ -574,6 +634,7 @@ void Session::Parts::open_model(const Request& request, std::size_t case_number,
     abandon_field();
     open = {.model = loaded->model, .notes = std::move(loaded->notes), .field = nullptr, .points = {}, .way = 0};
     if (!is_other_needle(request)) begin_case(std::move(plan));
+    open_images();
     open_case = case_number;
     show_model(0);
     if (!is_other_needle(request)) begin_map();
@@ -643,6 +704,7 @@ Result<> Session::Parts::start_replay(const std::string& name) {
   audience.show(made.scene);
   for (const Event& e : recording->events)
     audience.tell(LiveEvent{to_string(e.kind), e.time_s, e.depth_mm, e.force_N, e.region});
+  moments.reset();
   replayed_seeds.reset();
   replayed = std::move(in_use);
   replay = std::make_unique<Replay>(std::move(*recording), std::move(made.points));
@@ -654,6 +716,7 @@ Result<> Session::Parts::start_replay(const std::string& name) {
   status.state = SessionStatus::State::ready;
   status.replay = {.name = name, .time_s = 0.0, .duration_s = replay->duration_s(), .rate = 0.0};
   status.insertion = name;
+  open_images();
   status.hole = scenario->insertions.front().hole.value_or("");
   status.loop = {};
   whole_curve = true;
@@ -669,6 +732,17 @@ void Session::Parts::carry_out(const Request& request) {
                        "Choose one of these numbers"));
   };
   switch (request.kind) {
+    case Kind::image: {
+      const auto shown = shown_image(request.text);
+      if (!shown)
+        return refuse(request, input_error("picture", "there is no picture \"" + request.text + "\"",
+                                           "Choose none, transverse, sagittal or xray"));
+      images.show(*shown);
+      break;
+    }
+    case Kind::set:
+      if (auto done = images.set(request.text, request.number); !done) return refuse(request, done.error());
+      break;
     case Kind::predict:
       if (map_maker) map_maker->want_predictions(request.number > 0.0);
       break;
@@ -796,6 +870,7 @@ void Session::Parts::tick(double dt_s) {
   take_field();
   show_map();
   follow_implant();
+  show_images();
   std::shared_ptr<const LiveFrame> frame;
   if (live) {
     pump();
@@ -812,6 +887,7 @@ void Session::Parts::tick(double dt_s) {
   if (frame) {
     whole_curve = false;
     audience.show(std::move(frame));
+    take_moment();
     show_inside();
   }
   if (Clock::now() >= next_status) say_status();

@@ -115,6 +115,12 @@ void Viewer::send(std::shared_ptr<const LiveDose> dose) {
   write();
 }
 
+void Viewer::send(std::shared_ptr<const LiveImage> image) {
+  std::erase_if(waiting_, [](const Waiting& w) { return w.kind == wire::Kind::image; });
+  waiting_.push_back({wire::Kind::image, nullptr, {}, nullptr, std::move(image)});
+  write();
+}
+
 void Viewer::send_status(std::string json) {
   status_ = std::move(json);
   write();
@@ -138,9 +144,10 @@ bool Viewer::next_message() {
   if (!waiting_.empty()) {
     const Waiting next = std::move(waiting_.front());
     waiting_.pop_front();
-    outgoing_ = next.scene  ? wire::encode(*next.scene, sent_++)
-                : next.dose ? wire::encode(*next.dose, sent_++)
-                            : wire::encode(next.kind, next.json, sent_++);
+    outgoing_ = next.scene   ? wire::encode(*next.scene, sent_++)
+                : next.dose  ? wire::encode(*next.dose, sent_++)
+                : next.image ? wire::encode(*next.image, sent_++)
+                             : wire::encode(next.kind, next.json, sent_++);
     return true;
   }
   if (status_) {

@@ -39,6 +39,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   void send(std::shared_ptr<const Scene> scene);
   void send(std::shared_ptr<const LiveFrame> frame);
   void send(std::shared_ptr<const LiveDose> dose);
+  void send(std::shared_ptr<const LiveImage> image);
   /// @param kind a kind with JSON, except status; of maps, plans, implants and places of seeds only the newest waits
   void send(wire::Kind kind, std::string json);
   void send_status(std::string json);
@@ -71,6 +72,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
     std::shared_ptr<const Scene> scene;
     std::string json;
     std::shared_ptr<const LiveDose> dose{};
+    std::shared_ptr<const LiveImage> image{};
   };
   std::deque<Waiting> waiting_;
   std::optional<std::string> status_;

@@ -81,17 +81,27 @@ struct Need {
 
 const std::map<std::string, Need>& commands() {
   using enum Command::Do;
-  static const std::map<std::string, Need> all{
-      {"take", {take, "", false}},           {"release", {release, "", false}},
-      {"hole", {hole, "hole", true}},        {"insertion", {insertion, "index", false}},
-      {"reset", {reset, "", false}},         {"pause", {pause, "", false}},
-      {"resume", {resume, "", false}},       {"step", {step, "count", false}},
-      {"case", {open_case, "index", false}}, {"replay", {replay, "name", true}},
-      {"live", {live, "", false}},           {"seek", {seek, "time_s", false}},
-      {"play", {play, "rate", false}},       {"predict", {predict, "on", false}},
-      {"drawn", {drawn, "", false}},         {"needle", {needle, "index", false}},
-      {"drop", {drop, "", false}},           {"undo", {undo, "", false}},
-      {"clear", {clear, "", false}}};
+  static const std::map<std::string, Need> all{{"take", {take, "", false}},
+                                               {"release", {release, "", false}},
+                                               {"hole", {hole, "hole", true}},
+                                               {"insertion", {insertion, "index", false}},
+                                               {"reset", {reset, "", false}},
+                                               {"pause", {pause, "", false}},
+                                               {"resume", {resume, "", false}},
+                                               {"step", {step, "count", false}},
+                                               {"case", {open_case, "index", false}},
+                                               {"replay", {replay, "name", true}},
+                                               {"live", {live, "", false}},
+                                               {"seek", {seek, "time_s", false}},
+                                               {"play", {play, "rate", false}},
+                                               {"predict", {predict, "on", false}},
+                                               {"drawn", {drawn, "", false}},
+                                               {"needle", {needle, "index", false}},
+                                               {"drop", {drop, "", false}},
+                                               {"undo", {undo, "", false}},
+                                               {"clear", {clear, "", false}},
+                                               {"image", {image, "show", true}},
+                                               {"set", {set, "key", true}}};
   return all;
 }
 
@@ -108,6 +118,11 @@ std::optional<Command> decode_command(std::string_view text) {
   if (need.text ? !value.is_string() : !value.is_number()) return std::nullopt;
   if (need.text) {
     command.text = value.get<std::string>();
+    if (need.what == Command::Do::set) {
+      if (!json.contains("value") || !json["value"].is_number()) return std::nullopt;
+      command.number = json["value"].get<double>();
+      if (!std::isfinite(command.number)) return std::nullopt;
+    }
   } else {
     command.number = value.get<double>();
     if (!(std::abs(command.number) <= 1e6)) return std::nullopt;
@@ -168,6 +183,14 @@ Bytes encode(const LiveDose& dose, std::uint32_t number) {
   for (const std::uint32_t size : dose.size) out.put(size);
   out.put_floats(dose.origin_mm.x(), dose.origin_mm.y(), dose.origin_mm.z(), dose.spacing_mm, dose.unit_percent);
   out.put_all(std::span<const std::uint16_t>(dose.values));
+  return out.take();
+}
+
+Bytes encode(const LiveImage& image, std::uint32_t number) {
+  Writer out(Kind::image, number, kHeader + 12 + image.text.size() + image.pixels.size());
+  out.put_counts({image.text.size(), image.rows, image.columns});
+  out.text(image.text);
+  out.put_all(std::span<const std::uint8_t>(image.pixels));
   return out.take();
 }
 

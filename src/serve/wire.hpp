@@ -3,6 +3,7 @@
 
 #include "hand.hpp"
 #include "stylet/core/result.hpp"
+#include "stylet/serve/image_picture.hpp"
 #include "stylet/serve/implant_picture.hpp"
 #include "stylet/serve/picture.hpp"
 
@@ -33,6 +34,7 @@ enum class Kind : std::uint32_t {
   implant = 8,
   seeds = 9,
   dose = 10,
+  image = 11,
   hand = 16,
   command = 17
 };
@@ -45,6 +47,7 @@ Bytes encode(const Scene& scene, std::uint32_t number);
 /// @param whole_curve whether `curve` starts at the beginning of the insertion
 Bytes encode(const LiveFrame& frame, std::span<const Step> curve, bool whole_curve, std::uint32_t number);
 Bytes encode(const LiveDose& dose, std::uint32_t number);
+Bytes encode(const LiveImage& image, std::uint32_t number);
 /// Encodes a message that is JSON: of any other kind.
 Bytes encode(Kind kind, std::string_view json, std::uint32_t number);
 
@@ -69,11 +72,13 @@ struct Command {
     needle,
     drop,
     undo,
-    clear
+    clear,
+    image,
+    set
   };
   Do what{};
-  std::string text;     ///< argument of hole and replay
-  double number = 0.0;  ///< argument of insertion, needle, step, case, seek, play and predict
+  std::string text;     ///< argument of hole, replay and image; key of set
+  double number = 0.0;  ///< argument of insertion, needle, step, case, seek, play and predict; value of set
 };
 
 /// Decodes a message of a page. Empty if it is malformed: wrong length, unknown kind or command, numbers that are not

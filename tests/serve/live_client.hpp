@@ -119,6 +119,13 @@ class LiveClient {
     } else if (kind == 10) {
       dose_points = at<std::uint32_t>(bytes, 8) * at<std::uint32_t>(bytes, 12) * at<std::uint32_t>(bytes, 16);
       EXPECT_EQ(size, 40u + 2u * dose_points);
+    } else if (kind == 11) {
+      const auto length = at<std::uint32_t>(bytes, 8);
+      const std::size_t values = std::size_t{at<std::uint32_t>(bytes, 12)} * at<std::uint32_t>(bytes, 16);
+      ASSERT_EQ(size, 20u + length + values);
+      image = nlohmann::json::parse(bytes + 20, bytes + 20 + length);
+      pixels.assign(bytes + 20 + length, bytes + size);
+      ++images;
     }
   }
   [[nodiscard]] bool ready() const { return status.value("state", "") == "ready" && frames > 0; }
@@ -132,9 +139,11 @@ class LiveClient {
   nlohmann::json plan = nlohmann::json::object();
   nlohmann::json implant = nlohmann::json::object();
   nlohmann::json seeds = nlohmann::json::object();
+  nlohmann::json image = nlohmann::json::object();
+  std::vector<unsigned char> pixels;  // of the newest image
   std::vector<nlohmann::json> events, notices;
-  std::uint32_t received = 0, scenes = 0, frames = 0, bits = 0, samples = 0, displaced_nodes = 0, scene_nodes = 0,
-                dose_points = 0;
+  std::uint32_t received = 0, scenes = 0, frames = 0, images = 0, bits = 0, samples = 0, displaced_nodes = 0,
+                scene_nodes = 0, dose_points = 0;
   double time_s = 0.0;
   float depth_mm = 0.0F, force_N = 0.0F, most_N = 0.0F;
 

@@ -159,6 +159,33 @@ TEST(Wire, a_dose_has_its_grid_and_its_values) {
   EXPECT_TRUE(read.at_end());
 }
 
+TEST(Wire, a_picture_has_its_text_and_its_values) {
+  const serve::LiveImage image{R"({"modality":"xray"})", 2, 3, {0, 1, 2, 3, 4, 255}};
+  const wire::Bytes bytes = wire::encode(image, 9);
+  Reader read{bytes};
+  EXPECT_EQ(read.count(), 11u);
+  EXPECT_EQ(read.count(), 9u);
+  EXPECT_EQ(read.count(), image.text.size());
+  EXPECT_EQ(read.count(), 2u);
+  EXPECT_EQ(read.count(), 3u);
+  EXPECT_EQ(std::string(reinterpret_cast<const char*>(bytes.data()) + read.at, image.text.size()), image.text);
+  read.at += image.text.size();
+  for (const std::uint8_t value : image.pixels) EXPECT_EQ(read.take<std::uint8_t>(), value);
+  EXPECT_TRUE(read.at_end());
+}
+
+TEST(Wire, a_key_of_the_pictures_is_set_to_a_number) {
+  const auto decoded = wire::decode(command(R"({"do":"set","key":"probe.lift_mm","value":8.5})"));
+  const wire::Command* set = as_command(decoded);
+  ASSERT_NE(set, nullptr);
+  EXPECT_EQ(set->what, wire::Command::Do::set);
+  EXPECT_EQ(set->text, "probe.lift_mm");
+  EXPECT_EQ(set->number, 8.5);
+  EXPECT_FALSE(wire::decode(command(R"({"do":"set","key":"probe.lift_mm"})"))) << "no value";
+  EXPECT_FALSE(wire::decode(command(R"({"do":"set","key":"probe.lift_mm","value":"8"})"))) << "no number";
+  EXPECT_FALSE(wire::decode(command(R"({"do":"set","key":3,"value":8})"))) << "no key";
+}
+
 TEST(Wire, a_hand_is_taken_as_it_is_said) {
   const auto decoded = wire::decode(hand({12.5F, 20.F, 90.F, -1.F, 2.F}));
   ASSERT_TRUE(decoded);

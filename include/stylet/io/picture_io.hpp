@@ -22,19 +22,14 @@ struct PictureMarks {
   std::vector<std::array<double, 2>> dots = {};  ///< places (column, row)
   std::string title;                             ///< above the picture; empty: none
   std::string notice;                            ///< below the picture; empty: none
+  /// Words after the length of a bar, which is below the picture as its scale, such as "at the gland"; empty: no bar.
+  std::optional<std::string> bar_note = {};
 };
 
-/// Writes a picture with its marks as PNG. The file appears whole or not at all.
+/// Writes a picture with its marks as PNG. A small picture is enlarged by a whole number, so that there is room for its
+/// marks. The file appears whole or not at all.
 /// Errors: a file that cannot be written.
 Result<> write_picture_png(const Picture& picture, const PictureMarks& marks, const std::filesystem::path& path);
-
-/// Writes a picture as PNG with a strip below it: a bar as scale, the caption, and kPictureNotice. A small picture is
-/// enlarged by a whole number, so that there is room for the strip.
-/// @param caption words such as "X-ray, 60 keV"; may be empty
-/// @param scale_note words after the length of the bar, such as "at the gland"; may be empty
-/// Errors: a folder that does not exist, errors of the disk; nothing half-written stays.
-Result<> write_picture_png(const Picture& picture, const std::string& caption, const std::string& scale_note,
-                           const std::filesystem::path& path);
 
 /// Writes pictures of parallel planes as a volume in MetaImage (.mha): grey values of 8 bit, with spacing, origin and
 /// orientation in LPS, as 3D Slicer and ITK read them. The third axis is right × down.

@@ -85,6 +85,11 @@ struct SessionStatus {
     std::string problem;  ///< why nothing is recorded; empty: the session is recorded
     std::string warning;  ///< what may soon stop the recording
   } recording;
+  struct Image {
+    std::string shown = "none";  ///< the kind of picture that is made: "none", "transverse", "sagittal" or "xray"
+    std::string problem;         ///< why it cannot be made; empty: it can
+    std::string stage;           ///< what is being prepared for it; empty: nothing
+  } image;
   struct Replay {
     std::string name;  ///< recording that is replayed; empty: the session is live
     double time_s = 0.0;

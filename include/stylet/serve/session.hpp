@@ -4,6 +4,7 @@
 #include "stylet/core/progress.hpp"
 #include "stylet/realtime/runner.hpp"
 #include "stylet/serve/companion.hpp"
+#include "stylet/serve/image_picture.hpp"
 #include "stylet/serve/implant_case.hpp"
 #include "stylet/serve/implant_picture.hpp"
 #include "stylet/serve/picture.hpp"
@@ -64,6 +65,7 @@ class Audience {
   virtual void show(const LiveImplant& /*implant*/) {}
   virtual void show(const LiveSeeds& /*seeds*/) {}
   virtual void show(std::shared_ptr<const LiveDose> /*dose*/) {}
+  virtual void show(std::shared_ptr<const LiveImage> /*image*/) {}
   virtual void tell(const SessionStatus& status) = 0;
   virtual void tell(const LiveEvent& event) = 0;
   /// Reports that a request was refused.
@@ -89,6 +91,8 @@ struct Request {
     drop,       ///< drops the next seed of the needle
     undo,       ///< takes the last seed back
     clear,      ///< takes all seeds back
+    image,      ///< text: the kind of picture to make, "none", "transverse", "sagittal" or "xray"
+    set,        ///< text: a key of [probe], [ultrasound] or [fluoroscopy]; number: its value
     predict,    ///< number: 1 simulates an insertion through each hole for the map, in the background; 0 stops this
     greet,      ///< a viewer has connected and needs the whole force curve
     drawn       ///< a page has drawn its first complete picture

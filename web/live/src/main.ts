@@ -20,6 +20,7 @@ import { TemplatePicker } from './controls/template_picker';
 import { nameRegions } from './event_names';
 import { HandControl } from './hand';
 import { EndCard } from './implant/end_card';
+import { ImagePanel } from './imaging/image_panel';
 import { ImplantActions, ImplantPanel } from './implant/panel';
 import { compose, save } from './picture';
 import { Plane } from './sections/plane';
@@ -56,6 +57,7 @@ showNotices(part('notices'), session);
 speakEvents(document.body, session);
 new Header(part('top'), session, hand, { recordings: makeRecordings(session), picture: takePicture, help });
 const view = new ViewPanel(part('view3d'), session, hand);
+const images = new ImagePanel(part('image'), part('view3d'), part('tabs'), session);
 const planes = [new Plane('transverse', session), new Plane('sagittal', session)];
 const sections = planes.map((plane, i) => new SectionPanel(part(plane.name), session, plane, planes[1 - i]));
 const chart = buildChart(part('chart'), session);
@@ -67,7 +69,7 @@ new PushBar(part('push'), session, hand);
 new ReplayBar(part('replay'), part('push'), session);
 const endCard = new EndCard(session);
 new ImplantPanel(part('implant'), session, implant, () => endCard.show());
-bindKeys(session, hand, implant, help);
+bindKeys(session, hand, implant, images, help);
 bindGamepad(hand);
 
 session.on('scene', () => {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The state of the simulation, as this page has received it. Parts of the page listen to the topics that they need.
 import { understood, type Transport, type TransportListener } from './connection';
+import type { LiveImage } from './imaging/image';
 import type { Dose, Implant, Plan, Seeds } from './implant/implant';
 import type { Scene } from './scene';
 import { encodeCommand, encodeHand, Kind, type Command, type Event, type Frame, type Hand, type LiveMap, type Notice, type Status } from './wire';
@@ -16,6 +17,7 @@ interface Topics {
   implant: Implant; // what has been carried out of it
   seeds: Seeds;     // where the dropped seeds are now
   dose: Dose;       // the dose around the target
+  image: LiveImage; // the newest ultrasound or X-ray picture
   map: LiveMap;     // the map of the template's holes
   restart: void;    // the needle is at a start; earlier events do not count
 }
@@ -34,10 +36,11 @@ export class Session implements TransportListener {
   implant: Implant | null = null;
   seeds: Seeds | null = null;
   dose: Dose | null = null;
+  image: LiveImage | null = null;
   events: Event[] = [];           // since the start of the insertion
   private letGo = false;          // the user has handed the needle over, so the page does not take it on its own
   private readonly listeners: { [K in keyof Topics]: ((what: Topics[K]) => void)[] } = {
-    link: [], status: [], scene: [], frame: [], event: [], notice: [], map: [], plan: [], implant: [], seeds: [], dose: [], restart: [],
+    link: [], status: [], scene: [], frame: [], event: [], notice: [], map: [], plan: [], implant: [], seeds: [], dose: [], image: [], restart: [],
   };
 
   constructor(private readonly transport: Transport) {}
@@ -104,7 +107,7 @@ export class Session implements TransportListener {
     switch (message.kind) {
       case Kind.scene:
         this.scene = message.scene;
-        this.frame = null;
+        this.frame = this.image = null;
         this.restart();
         return this.tell('scene', message.scene);
       case Kind.frame:
@@ -127,6 +130,9 @@ export class Session implements TransportListener {
       case Kind.dose:
         this.dose = message.dose;
         return this.tell('dose', message.dose);
+      case Kind.image:
+        this.image = message.image;
+        return this.tell('image', message.image);
       case Kind.map:
         this.map = message.map;
         return this.tell('map', message.map);

@@ -2,13 +2,14 @@
 // Encodes and decodes the messages of docs/live_protocol.md. Decoding checks every length before it reads; a WireError
 // says what is wrong.
 import type { HoleMap } from '../../shared/hole_map';
+import type { LiveImage, ImageText, ShownImage } from './imaging/image';
 import type { Dose, Implant, Plan, Seeds } from './implant/implant';
 import type { Scene, SceneText } from './scene';
 
 export const SUBPROTOCOL = 'stylet-live-2';
 export const PROTOCOL = 2;
 
-export const enum Kind { scene = 1, frame = 2, status = 3, event = 4, notice = 5, map = 6, plan = 7, implant = 8, seeds = 9, dose = 10, hand = 16, command = 17 }
+export const enum Kind { scene = 1, frame = 2, status = 3, event = 4, notice = 5, map = 6, plan = 7, implant = 8, seeds = 9, dose = 10, image = 11, hand = 16, command = 17 }
 export const TIP_STATES = ['in air', 'pressing', 'cutting', 'in its track', 'on bone', 'through'] as const;
 export const SAMPLE_WORDS = 8;  // time, depth, axial, sagittal, lateral force, CPU time [µs], tip state, flags
 
@@ -53,6 +54,7 @@ export interface Status {
   you_hold?: boolean; held?: boolean; asking?: number; you_ask?: boolean; viewers?: number; device?: string; device_problem?: string;
   recording?: { name: string; seconds: number; problem?: string; warning?: string } | null;
   replay?: { name: string; time_s: number; duration_s: number; playing: boolean; rate: number } | null;
+  image?: { shown: ShownImage; problem: string; stage: string };
   loop?: { steps: number; missed: number; p50_us: number; p99_us: number; max_us: number; rights?: string } | null;
   dropped_messages?: number; skipped_frames?: number;
 }
@@ -65,7 +67,7 @@ export type Command =
   | { do: 'take' | 'release' | 'reset' | 'pause' | 'resume' | 'live' | 'drawn' | 'drop' | 'undo' | 'clear' }
   | { do: 'hole'; hole: string } | { do: 'insertion' | 'needle' | 'case'; index: number } | { do: 'step'; count: number }
   | { do: 'replay'; name: string } | { do: 'seek'; time_s: number } | { do: 'play'; rate: number }
-  | { do: 'predict'; on: 0 | 1 };
+  | { do: 'predict'; on: 0 | 1 } | { do: 'image'; show: ShownImage } | { do: 'set'; key: string; value: number };
 
 export interface Hand { depth: number; speed: number; roll: number; tiltLeft: number; tiltAnterior: number }
 
@@ -73,7 +75,8 @@ export type Message =
   | { kind: Kind.scene; scene: Scene } | { kind: Kind.frame; frame: Frame } | { kind: Kind.status; status: Status }
   | { kind: Kind.event; event: Event } | { kind: Kind.notice; notice: Notice }
   | { kind: Kind.map; map: LiveMap } | { kind: Kind.plan; plan: Plan } | { kind: Kind.implant; implant: Implant }
-  | { kind: Kind.seeds; seeds: Seeds } | { kind: Kind.dose; dose: Dose };
+  | { kind: Kind.seeds; seeds: Seeds } | { kind: Kind.dose; dose: Dose }
+  | { kind: Kind.image; image: LiveImage };
 
 export class WireError extends Error {}
 
@@ -82,7 +85,8 @@ const NO_CONTACT_INSIDE = 1 << 6;
 const HEADER = 8;
 const FRAME_HEADER = 164;
 const DOSE_HEADER = HEADER + 32;
-const LIMITS = { points: 4096, contacts: 8192, samples: 4096, nodes: 4_000_000, triangles: 8_000_000, dose: 1_000_000 };
+const IMAGE_HEADER = HEADER + 12;
+const LIMITS = { points: 4096, contacts: 8192, samples: 4096, nodes: 4_000_000, triangles: 8_000_000, dose: 1_000_000, pixels: 16_000_000 };
 
 function must(holds: boolean, what: string): asserts holds {
   if (!holds) throw new WireError(what);
@@ -163,6 +167,14 @@ function decodeDose(buffer: ArrayBuffer, view: DataView): Dose {
   return { size, origin: [x, y, z], spacing, unit, values: new Uint16Array(buffer, DOSE_HEADER, points) };
 }
 
+function decodeImage(buffer: ArrayBuffer, view: DataView): LiveImage {
+  must(buffer.byteLength >= IMAGE_HEADER, 'a picture without its header');
+  const [bytes, rows, columns] = [0, 4, 8].map((offset) => view.getUint32(HEADER + offset, true));
+  must(rows * columns <= LIMITS.pixels && buffer.byteLength === IMAGE_HEADER + bytes + rows * columns, 'a picture of the wrong length');
+  const text = json(buffer, IMAGE_HEADER, bytes) as ImageText;
+  return { ...text, rows, columns, pixels: new Uint8Array(buffer, IMAGE_HEADER + bytes, rows * columns) };
+}
+
 /** Decodes a message; null for an unknown kind. Throws a WireError if the message is malformed. */
 export function decode(buffer: ArrayBuffer): Message | null {
   must(buffer.byteLength >= HEADER, 'a message without its header');
@@ -178,6 +190,7 @@ export function decode(buffer: ArrayBuffer): Message | null {
     case Kind.implant: return { kind: Kind.implant, implant: rest() as Implant };
     case Kind.seeds: return { kind: Kind.seeds, seeds: rest() as Seeds };
     case Kind.dose: return { kind: Kind.dose, dose: decodeDose(buffer, view) };
+    case Kind.image: return { kind: Kind.image, image: decodeImage(buffer, view) };
     case Kind.map: return { kind: Kind.map, map: rest() as LiveMap };
     default: return null;
   }

@@ -23,6 +23,7 @@ constexpr int kTextHeight = 26;  // pixels above and below it for a line of text
 constexpr int kMargin = 8;
 constexpr int kLetters = 13;  // size of letters in points at 72 dots per inch
 constexpr unsigned char kInk = 200;
+constexpr int kNarrowest = 512;  // pixels; a narrower picture is enlarged
 
 /// A grey canvas whose rows are counted from the top.
 class Sheet {
@@ -68,6 +69,41 @@ class Sheet {
   vtkNew<vtkImageData> image_;
 };
 
+/// A round length for a bar [mm]: the longest of 1, 2 and 5 times a power of ten that is at most a quarter of the
+/// width.
+double bar_length(double width_mm) {
+  const double most = 0.25 * width_mm;
+  const double power = std::pow(10.0, std::floor(std::log10(most)));
+  for (const double factor : {5.0, 2.0}) {
+    if (factor * power <= most) return factor * power;
+  }
+  return power;
+}
+
+/// A bar with feet at its ends, and its length in words.
+void draw_bar(Sheet& sheet, const Picture& picture, const std::string& note, int left, int row) {
+  const double length_mm = bar_length(picture.columns * picture.mm_per_pixel);
+  const int length = static_cast<int>(std::lround(length_mm / picture.mm_per_pixel));
+  sheet.fill(left, row, length, 2, kInk);
+  for (const int end : {left, left + length - 2}) sheet.fill(end, row - 4, 2, 10, kInk);
+  sheet.text(left + length + kMargin, row, fmt::format("{:g} mm{}{}", length_mm, note.empty() ? "" : " ", note));
+}
+
+/// The same picture with each pixel as a square of some pixels.
+Picture enlarged(const Picture& picture, int by) {
+  Picture large = picture;
+  large.columns *= by;
+  large.rows *= by;
+  large.mm_per_pixel /= by;
+  large.pixels.resize(static_cast<std::size_t>(large.columns) * static_cast<std::size_t>(large.rows));
+  for (int row = 0; row < large.rows; ++row) {
+    for (int column = 0; column < large.columns; ++column)
+      large.pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(large.columns) +
+                   static_cast<std::size_t>(column)] = picture.at(row / by, column / by);
+  }
+  return large;
+}
+
 void draw_scale(Sheet& sheet, const Picture& picture, double surface_row, int left, int top) {
   const double step = 10.0 / picture.mm_per_pixel;
   sheet.fill(left, top, 1, std::min(picture.rows, static_cast<int>(surface_row) + 1), kInk / 2);
@@ -81,20 +117,24 @@ void draw_scale(Sheet& sheet, const Picture& picture, double surface_row, int le
 
 }  // namespace
 
-Result<> write_picture_png(const Picture& picture, const PictureMarks& marks, const std::filesystem::path& path) {
+Result<> write_picture_png(const Picture& original, const PictureMarks& marks, const std::filesystem::path& path) {
+  const int by = std::max(1, (kNarrowest + original.columns - 1) / std::max(1, original.columns));
+  const Picture picture = enlarged(original, by);
   const int top = marks.title.empty() ? kMargin : kTextHeight;
-  const int bottom = marks.notice.empty() ? kMargin : kTextHeight;
+  const int bottom = (marks.notice.empty() ? kMargin : kTextHeight) + (marks.bar_note ? kTextHeight : 0);
   const int right = marks.surface_row ? kScaleWidth : kMargin;
   Sheet sheet(kMargin + picture.columns + right, top + picture.rows + bottom);
   for (int row = 0; row < picture.rows; ++row)
     for (int column = 0; column < picture.columns; ++column)
       sheet.set(kMargin + column, top + row, picture.at(row, column));
   for (const auto& dot : marks.dots)
-    sheet.fill(kMargin + static_cast<int>(std::lround(dot[0])), top + static_cast<int>(std::lround(dot[1])), 2, 2,
-               kInk);
-  if (marks.surface_row) draw_scale(sheet, picture, *marks.surface_row, kMargin + picture.columns + 4, top);
+    sheet.fill(kMargin + static_cast<int>(std::lround(by * dot[0])), top + static_cast<int>(std::lround(by * dot[1])),
+               2, 2, kInk);
+  if (marks.surface_row) draw_scale(sheet, picture, by * *marks.surface_row, kMargin + picture.columns + 4, top);
   if (!marks.title.empty()) sheet.text(kMargin, top / 2, marks.title);
-  if (!marks.notice.empty()) sheet.text(kMargin, top + picture.rows + bottom / 2, marks.notice);
+  const int under = top + picture.rows;
+  if (marks.bar_note) draw_bar(sheet, picture, *marks.bar_note, kMargin, under + kTextHeight / 2);
+  if (!marks.notice.empty()) sheet.text(kMargin, under + bottom - kTextHeight / 2, marks.notice);
 
   vtkNew<vtkPNGWriter> writer;
   writer->WriteToMemoryOn();

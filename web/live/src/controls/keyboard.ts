@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Keys. A focused control gets the keys that it uses; all other keys move the needle.
 import { SPEEDS, type HandControl } from '../hand';
+import type { ImagePanel } from '../imaging/image_panel';
 import type { ImplantActions } from '../implant/panel';
 import type { Session } from '../session';
 
@@ -15,6 +16,7 @@ export const KEYS: [string, string][] = [
   ['Home', 'make the hub straight again'],
   ['D; U or Ctrl Z', 'with a plan of seeds: drop the next seed, or hold the train and draw back; take it back'],
   ['G; N', 'with a plan of seeds: go to the depth of the next seed or of the train; take the next needle'],
+  ['T, S; [ and ]; F', 'with the ultrasound picture: transverse, sagittal; stepper to inferior, superior; freeze (S does not pull then)'],
   ['Space', 'pause, resume'],
   ['.', 'make a single step while paused'],
   ['R', 'go back to the start of this insertion'],
@@ -36,7 +38,7 @@ const HELD: Record<string, Held> = {
 };
 const PUSHES = new Set(['KeyW', 'KeyS', 'ArrowUp', 'ArrowDown']);
 
-export function bindKeys(session: Session, hand: HandControl, implant: ImplantActions, toggleHelp: () => void): void {
+export function bindKeys(session: Session, hand: HandControl, implant: ImplantActions, images: ImagePanel, toggleHelp: () => void): void {
   const held = new Map<string, Held>();  // actions of the held keys, by the key's code
   let last = 0;
   const turn = (now: number) => {
@@ -59,6 +61,11 @@ export function bindKeys(session: Session, hand: HandControl, implant: ImplantAc
     KeyD: () => implant.drop(), KeyU: () => implant.undo(), KeyG: () => implant.go(), KeyN: () => implant.next(),
   };
 
+  const ofUltrasound: Record<string, () => void> = {
+    KeyT: () => images.show('transverse'), KeyS: () => images.show('sagittal'), KeyF: () => images.toggleFreeze(),
+    BracketLeft: () => images.step(-1), BracketRight: () => images.step(1),
+  };
+
   document.addEventListener('keydown', (e) => {
     const isUndo = (e.ctrlKey || e.metaKey) && !e.shiftKey && !e.altKey && e.code === 'KeyZ';
     if (isUndo && implant.isThere && !document.querySelector('dialog[open]')) {
@@ -68,6 +75,11 @@ export function bindKeys(session: Session, hand: HandControl, implant: ImplantAc
     if (e.ctrlKey || e.altKey || e.metaKey || e.defaultPrevented) return;
     if (e.key === '?') return toggleHelp();
     if (usesKey(e.target as HTMLElement, e.code) || document.querySelector('dialog[open]')) return;
+    if (images.isUltrasound && e.code in ofUltrasound && !e.shiftKey) {
+      e.preventDefault();
+      if (!e.repeat || e.code.startsWith('Bracket')) ofUltrasound[e.code]();
+      return;
+    }
     if (implant.isThere && e.code in ofImplant && !e.shiftKey) {
       e.preventDefault();
       if (!e.repeat) ofImplant[e.code]();

@@ -16,6 +16,7 @@ import { CutPlane } from './cut_plane';
 import { GlandGhost } from './gland_ghost';
 import { Pace } from './pace';
 import { RegionSurface } from './region_surface';
+import { ProbeBody } from './probe_body';
 import { SeedBodies } from './seed_bodies';
 import { TemplatePlate } from './template_plate';
 import { TipErrorMark } from './tip_error_mark';
@@ -28,6 +29,7 @@ export class Stage {
   readonly ghost = new GlandGhost(this.cut.clipping);
   readonly tipError = new TipErrorMark();
   readonly seeds = new SeedBodies();
+  readonly probe = new ProbeBody();
   readonly canvas: HTMLCanvasElement;
   onFirstPicture: () => void = () => {};
   private needle = new NeedleMesh(1.27);
@@ -52,7 +54,7 @@ export class Stage {
     this.renderer.localClippingEnabled = true;
     this.canvas = this.renderer.domElement;
     box.append(this.canvas);
-    this.scene.add(this.needle.object, this.contacts.object, this.cut.object, this.template.object, this.ghost.object, this.tipError.object, this.seeds.object);
+    this.scene.add(this.needle.object, this.contacts.object, this.cut.object, this.template.object, this.ghost.object, this.tipError.object, this.seeds.object, this.probe.object);
     this.scene.add(new THREE.HemisphereLight('#ffffff', '#c8ccd2', 1.7));
     const lamp = new THREE.DirectionalLight('#ffffff', 1.6);
     lamp.position.set(-0.4, 0.7, 1);

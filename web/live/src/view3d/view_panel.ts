@@ -68,6 +68,10 @@ export class ViewPanel {
     }, { capture: true, passive: false });
     session.on('frame', () => this.update());
     for (const topic of ['plan', 'implant', 'seeds'] as const) session.on(topic, () => this.showSeeds());
+    session.on('image', (image) => {
+      this.stage?.probe.show(image.probe);
+      this.stage?.draw();
+    });
     session.on('restart', () => this.setScale(SMALLEST_SCALE_MM));
     session.on('status', (status) => {
       this.stage?.template.mark(status.hole ?? '');
@@ -119,7 +123,10 @@ export class ViewPanel {
 
   private showAnatomy(stage: Stage, anatomy: Anatomy, again: boolean): void {
     stage.setAnatomy(anatomy, again);
-    if (!again) this.cutControl?.setScene(anatomy.scene);
+    if (!again) {
+      this.cutControl?.setScene(anatomy.scene);
+      stage.probe.show(null);
+    }
     this.list.replaceChildren(...stage.surfaces.map((surface, i) => this.rowOf(stage, surface, i)));
     for (const surface of stage.surfaces) surface.colorByDisplacement(this.byDisplacement);
     stage.showTissue(this.most);

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "image_desk.hpp"
+
+#include "image_maker.hpp"
+
+#include "stylet/realtime/steppable.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <variant>
+
+namespace stylet::serve {
+
+namespace {
+
+constexpr std::array<const char*, 4> kShownImages{"none", "transverse", "sagittal", "xray"};
+constexpr auto kImageEvery = std::chrono::milliseconds(40);  // a picture takes less; the rest is left to the loop
+
+/// The state of the loop that a picture needs.
+struct LoopState {
+  double time_s = 0.0;
+  std::vector<TissueForce> forces;
+  ShownNeedle needle;
+  std::vector<ShownSeed> seeds;
+};
+
+bool is_of_pictures(std::string_view key) {
+  return key.starts_with("probe.") || key.starts_with("ultrasound.") || key.starts_with("fluoroscopy.");
+}
+
+bool has_same_tables(const Scenario& a, const Scenario& b) {
+  return a.probe == b.probe && a.ultrasound == b.ultrasound && a.fluoroscopy == b.fluoroscopy;
+}
+
+/// Takes the tables of pictures over from another scenario.
+void take_tables(Scenario& to, const Scenario& from) {
+  to.probe = from.probe;
+  to.ultrasound = from.ultrasound;
+  to.fluoroscopy = from.fluoroscopy;
+}
+
+}  // namespace
+
+const char* to_string(ShownImage shown) { return kShownImages.at(static_cast<std::size_t>(shown)); }
+
+std::optional<ShownImage> shown_image(std::string_view name) {
+  const auto found = std::find(kShownImages.begin(), kShownImages.end(), name);
+  if (found == kShownImages.end()) return std::nullopt;
+  return static_cast<ShownImage>(found - kShownImages.begin());
+}
+
+struct ImageDesk::Parts {
+  Parts() {
+    thread = std::jthread([this](const std::stop_token& stop) { run(stop); });
+  }
+
+  std::mutex mutex;
+  std::condition_variable_any wake;
+  // Guarded by the mutex.
+  std::optional<ImageSubject> patient;  ///< taken by the thread
+  Scenario tables;                      ///< as set by the pages
+  ShownImage shown = ShownImage::none;
+  bool is_changed = false;  ///< the tables or the kind of picture
+  std::variant<std::monostate, LoopState, Moment> newest;
+  std::shared_ptr<const LiveImage> made;
+  std::string problem, stage;
+
+  // Used by the caller's thread.
+  Scenario planned;  ///< of the open patient, as its file has it
+
+  std::jthread thread;  ///< last member, so that it starts when the others exist
+
+  void run(const std::stop_token& stop);
+};
+
+/// Takes up what has come, makes a picture of it, and waits until the next one is due.
+void ImageDesk::Parts::run(const std::stop_token& stop) {
+  ImageMaker maker;
+  while (!stop.stop_requested()) {
+    std::variant<std::monostate, LoopState, Moment> state;
+    {
+      std::unique_lock lock(mutex);
+      const bool go_on = wake.wait(lock, stop, [&] {
+        return shown != ShownImage::none && (is_changed || patient || !std::holds_alternative<std::monostate>(newest));
+      });
+      if (!go_on) return;
+      if (patient) maker.open(*std::exchange(patient, std::nullopt));
+      maker.set(shown, tables);
+      is_changed = false;
+      state = std::exchange(newest, std::monostate{});
+    }
+    const auto begun = std::chrono::steady_clock::now();
+    const auto tell = [&](const std::string& what) {
+      const std::lock_guard lock(mutex);
+      stage = what;
+    };
+    if (const auto* loop = std::get_if<LoopState>(&state))
+      maker.take(loop->time_s, loop->forces, loop->needle, loop->seeds);
+    if (auto* moment = std::get_if<Moment>(&state)) maker.take(std::move(*moment));
+    auto image = maker.make(tell);
+    {
+      const std::lock_guard lock(mutex);
+      stage.clear();
+      problem = image ? "" : image.error().what + ". " + image.error().cure + ".";
+      made = image ? *std::move(image) : nullptr;
+    }
+    std::unique_lock lock(mutex);
+    wake.wait_until(lock, stop, begun + kImageEvery, [] { return false; });
+  }
+}
+
+ImageDesk::ImageDesk() : parts_(std::make_unique<Parts>()) {}
+ImageDesk::~ImageDesk() = default;
+
+void ImageDesk::open(ImageSubject patient) {
+  const std::lock_guard lock(parts_->mutex);
+  // Another needle in the same patient leaves the probe where it is.
+  if (!has_same_tables(parts_->planned, patient.scenario)) take_tables(parts_->tables, patient.scenario);
+  parts_->planned = patient.scenario;
+  parts_->patient = std::move(patient);
+  parts_->newest = std::monostate{};
+  parts_->wake.notify_all();
+}
+
+void ImageDesk::show(ShownImage shown) {
+  shown_ = shown;
+  const std::lock_guard lock(parts_->mutex);
+  parts_->shown = shown;
+  parts_->is_changed = true;
+  if (shown == ShownImage::none) parts_->problem.clear();
+  parts_->wake.notify_all();
+}
+
+Result<> ImageDesk::set(const std::string& key, double value) {
+  if (!is_of_pictures(key))
+    return input_error(key, "it is not a key of the pictures", "Set a key of [probe], [ultrasound] or [fluoroscopy]");
+  const std::lock_guard lock(parts_->mutex);
+  const ScenarioValue as_number{.type = ScenarioValue::Type::number, .number = value};
+  if (auto done = set_scenario_key(parts_->tables, key, as_number, key); !done) return done;
+  parts_->is_changed = true;
+  parts_->wake.notify_all();
+  return Ok{};
+}
+
+void ImageDesk::take(const Snapshot& snapshot, std::vector<ShownSeed> seeds) {
+  LoopState state;
+  state.time_s = snapshot.step.time_s;
+  state.forces.resize(Snapshot::kForces);
+  state.forces.resize(tissue_forces(snapshot, state.forces).size());
+  for (const Triple& point : snapshot.centreline) state.needle.centreline_mm.push_back(vec3(point));
+  state.seeds = std::move(seeds);
+  const std::lock_guard lock(parts_->mutex);
+  parts_->newest = std::move(state);
+  parts_->wake.notify_all();
+}
+
+void ImageDesk::take(Moment moment) {
+  const std::lock_guard lock(parts_->mutex);
+  parts_->newest = std::move(moment);
+  parts_->wake.notify_all();
+}
+
+std::shared_ptr<const LiveImage> ImageDesk::news() {
+  const std::lock_guard lock(parts_->mutex);
+  return std::exchange(parts_->made, nullptr);
+}
+
+std::string ImageDesk::problem() const {
+  const std::lock_guard lock(parts_->mutex);
+  return parts_->problem;
+}
+
+std::string ImageDesk::stage() const {
+  const std::lock_guard lock(parts_->mutex);
+  return parts_->stage;
+}
+
+}  // namespace stylet::serve

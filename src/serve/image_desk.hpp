@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/imaging/moment.hpp"
+#include "stylet/realtime/snapshot.hpp"
+#include "stylet/serve/image_picture.hpp"
+#include "stylet/sim/display_field.hpp"
+#include "stylet/sim/scenario.hpp"
+
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace stylet::serve {
+
+/// The patient whose pictures are made: of the open model, or of a recording.
+struct ImageSubject {
+  std::shared_ptr<const TetMesh> mesh;
+  Scenario scenario;                            ///< with the tables of probe, ultrasound and X-ray
+  std::vector<int> gland;                       ///< regions of the target
+  std::shared_ptr<const DisplayField> field{};  ///< of the open model; null in a replay
+};
+
+/// Makes ultrasound and X-ray pictures of the newest moment, one after the other, in a thread of its own. Moments that
+/// come while a picture is being made replace each other. The other calls come from one thread.
+class ImageDesk {
+ public:
+  ImageDesk();
+  ~ImageDesk();
+
+  /// Takes up another patient; the settings of the probe, scanner and C-arm become those of its scenario.
+  void open(ImageSubject patient);
+  /// The kind of picture to make; `none` rests.
+  void show(ShownImage shown);
+  [[nodiscard]] ShownImage shown() const { return shown_; }
+  /// Sets a key of [probe], [ultrasound] or [fluoroscopy]. Errors: another key; a value out of range.
+  Result<> set(const std::string& key, double value);
+
+  /// The newest moment of the loop. @param seeds where they are now
+  void take(const Snapshot& snapshot, std::vector<ShownSeed> seeds);
+  /// The newest moment of a replay.
+  void take(Moment moment);
+
+  /// The newest picture; null if there is none since the last call.
+  std::shared_ptr<const LiveImage> news();
+  /// Why no picture can be made of this patient; empty: it can.
+  [[nodiscard]] std::string problem() const;
+  /// What is being prepared; empty: nothing.
+  [[nodiscard]] std::string stage() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+  ShownImage shown_ = ShownImage::none;
+};
+
+}  // namespace stylet::serve

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "image_maker.hpp"
+
+#include "stylet/imaging/fluoroscope.hpp"
+#include "stylet/imaging/ultrasound_scanner.hpp"
+#include "stylet/probe/patient_probe.hpp"
+#include "stylet/sim/display_near_field.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <ctime>
+#include <numbers>
+#include <numeric>
+#include <optional>
+
+namespace stylet::serve {
+
+namespace {
+
+using ImageJson = nlohmann::json;
+
+constexpr double kImageRange_dB = 100.0;  // of the values that are sent; the page chooses its own range of them
+
+ImageJson json_of(const Vec3& x) { return {x.x(), x.y(), x.z()}; }
+
+double processor_ms() {
+  std::timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+std::vector<SurfacePoint> every_node(const TetMesh& mesh) {
+  std::vector<SurfacePoint> points;
+  for (Index node = 0; node < mesh.node_count(); ++node) points.push_back({{node, -1, -1}, {1.0, 0.0, 0.0}});
+  return points;
+}
+
+/// What the loop's forces do to all nodes of the mesh and, between the nodes, beside the needle.
+class LoopMotion {
+ public:
+  explicit LoopMotion(const std::shared_ptr<const DisplayField>& field)
+      : field_(field),
+        load_(field->make_load()),
+        near_(std::shared_ptr<const Model>(field, &field->model()), every_node(field->model().mesh())),
+        nodes_(static_cast<std::size_t>(field->model().mesh().node_count())) {
+    std::iota(nodes_.begin(), nodes_.end(), Index{0});
+    const Scenario& scenario = field->model().scenario();
+    for (const std::string& region : field->model().mesh().regions) tissue_.push_back(tissue_of(scenario, region));
+  }
+
+  void compute(std::span<const TissueForce> forces, Moment& moment) {
+    field_->set(forces, load_);
+    field_->displacement(nodes_, load_, moment.displacement);
+    near_.set(forces);
+    near_.add(moment.displacement);
+    moment.forces.clear();
+    for (const TissueForce& force : forces) moment.forces.push_back(shown(force));
+  }
+
+ private:
+  [[nodiscard]] ShownForce shown(const TissueForce& force) const {
+    const TetMesh& mesh = field_->model().mesh();
+    const Scenario& scenario = field_->model().scenario();
+    const auto tet = static_cast<std::size_t>(force.at.tet);
+    const TissueParameters& tissue = tissue_[static_cast<std::size_t>(mesh.tet_region[tet])];
+    ShownForce out;
+    out.at_mm.setZero();
+    for (std::size_t k = 0; k < 4; ++k)
+      out.at_mm +=
+          force.at.weights[static_cast<Eigen::Index>(k)] * mesh.nodes[static_cast<std::size_t>(mesh.tets[tet][k])];
+    out.force_N = force.force;
+    const bool is_tip = force.along.isZero();
+    if (!is_tip) out.along = force.along;
+    out.length_mm = is_tip ? 0.0 : scenario.coupling.spacing_mm;
+    out.epsilon_mm = std::sqrt(std::numbers::e) * 0.5 * scenario.needle.diameter_mm;
+    out.shear_MPa = 1e-3 * tissue.young_kPa / (2.0 * (1.0 + tissue.poisson));
+    out.poisson = tissue.poisson;
+    return out;
+  }
+
+  std::shared_ptr<const DisplayField> field_;
+  DisplayField::Load load_;
+  DisplayNearField near_;
+  std::vector<Index> nodes_;
+  std::vector<TissueParameters> tissue_;  ///< by region
+};
+
+bool is_same_patient(const ImageSubject& a, const ImageSubject& b) {
+  return a.mesh && b.mesh && a.gland == b.gland && a.mesh->nodes == b.mesh->nodes &&
+         a.mesh->tet_region == b.mesh->tet_region && a.scenario.tissue == b.scenario.tissue;
+}
+
+/// A probe that presses, with the model that it belongs to.
+struct PressingProbe {
+  std::shared_ptr<const Model> model;
+  PatientProbe probe;
+  Eigen::Matrix3Xf moved;  ///< (3 × nodes) [mm] displacement by the probe
+
+  /// Presses, and moves tissue, needles and seeds of a moment. @return the force on the probe [N]
+  double press(const ProbeSettings& settings, Moment& moment) {
+    const double force = probe.press(settings).force_N.norm();
+    probe.contact().displacement(moved);
+    for (ShownNeedle& needle : moment.needles) {
+      for (Vec3& x : needle.centreline_mm) x += at(x);
+    }
+    for (ShownSeed& seed : moment.seeds) seed.centre_mm += at(seed.centre_mm);
+    moment.displacement += moved;
+    return force;
+  }
+
+ private:
+  /// Displacement by the probe near a place; zero outside of the patient.
+  [[nodiscard]] Vec3 at(const Vec3& x) const {
+    const auto found = model->locator().find(x);
+    if (!found) return Vec3::Zero();
+    const auto& corners = model->mesh().tets[static_cast<std::size_t>(found->tet)];
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t k = 0; k < corners.size(); ++k)
+      sum += found->weights[static_cast<Eigen::Index>(k)] * moved.col(corners[k]).cast<double>();
+    return sum;
+  }
+};
+
+}  // namespace
+
+struct ImageMaker::Parts {
+  ImageSubject patient;
+  ShownImage shown = ShownImage::none;
+  Scenario tables;
+  Moment moment;
+  std::optional<LoopMotion> motion;
+  std::optional<UltrasoundScanner> scanner;
+  std::unique_ptr<Fluoroscope> fluoroscope;
+  std::optional<ProbeSeat> seat;
+  std::optional<PressingProbe> pressing;  ///< of a scenario with a probe, while the model is there
+
+  [[nodiscard]] bool may_press() const { return patient.scenario.probe.kind != ProbeKind::none && patient.field; }
+  [[nodiscard]] ImageJson probe_json(const ProbePlace& place, const std::optional<double>& force_N) const;
+  Result<> prepare_probe(const std::function<void(const std::string&)>& tell);
+  Result<std::shared_ptr<const LiveImage>> ultrasound();
+  Result<std::shared_ptr<const LiveImage>> xray();
+};
+
+ImageMaker::ImageMaker() : parts_(std::make_unique<Parts>()) {}
+ImageMaker::~ImageMaker() = default;
+
+void ImageMaker::open(ImageSubject patient) {
+  Parts& p = *parts_;
+  p.scanner.reset();  // scanner and fluoroscope belong to one mesh object
+  p.fluoroscope.reset();
+  p.motion.reset();
+  if (!is_same_patient(p.patient, patient)) {
+    p.seat.reset();
+    p.pressing.reset();
+  }
+  p.patient = std::move(patient);
+  p.moment = moment_at_rest(*p.patient.mesh);
+  if (p.patient.field) p.motion.emplace(p.patient.field);
+}
+
+void ImageMaker::set(ShownImage shown, const Scenario& tables) {
+  Parts& p = *parts_;
+  p.shown = shown;
+  if (p.scanner && !(tables.ultrasound == p.tables.ultrasound)) p.scanner.reset();
+  if (!(tables.fluoroscopy == p.tables.fluoroscopy)) p.fluoroscope.reset();
+  p.tables.probe = tables.probe;
+  p.tables.ultrasound = tables.ultrasound;
+  p.tables.fluoroscopy = tables.fluoroscopy;
+}
+
+void ImageMaker::take(double time_s, std::span<const TissueForce> forces, const ShownNeedle& needle,
+                      const std::vector<ShownSeed>& seeds) {
+  Parts& p = *parts_;
+  if (!p.patient.mesh) return;
+  p.moment.time_s = time_s;
+  if (p.motion) p.motion->compute(forces, p.moment);
+  const Scenario& scenario = p.patient.scenario;
+  p.moment.needles = {shown_needle(scenario.needle.diameter_mm, scenario.needle.lumen_diameter_mm)};
+  p.moment.needles.front().centreline_mm = needle.centreline_mm;
+  p.moment.seeds = seeds;
+}
+
+void ImageMaker::take(Moment moment) { parts_->moment = std::move(moment); }
+
+ImageJson ImageMaker::Parts::probe_json(const ProbePlace& place, const std::optional<double>& force_N) const {
+  const ProbeSettings& probe = tables.probe;
+  const Capsule surface = capsule_of(place);
+  return {{"depth_mm", probe.depth_mm.value_or(seat->gland_mm)},
+          {"lift_mm", probe.lift_mm},
+          {"tilt_deg", probe.tilt_deg},
+          {"roll_deg", probe.roll_deg},
+          {"balloon_mm", probe.balloon_mm},
+          {"step_mm", probe.step_mm},
+          {"diameter_mm", probe.diameter_mm},
+          {"tip_mm", json_of(surface.centre_mm + surface.radius_mm * surface.axis)},
+          {"axis", json_of(surface.axis)},
+          {"force_N", force_N ? ImageJson(*force_N) : ImageJson(nullptr)}};
+}
+
+/// Finds the place of the probe, and solves for the wall that it presses.
+Result<> ImageMaker::Parts::prepare_probe(const std::function<void(const std::string&)>& tell) {
+  if (!seat) {
+    auto found = probe_seat(*patient.mesh, patient.gland, patient.scenario.name);
+    if (!found) return found.error();
+    seat = *found;
+  }
+  if (pressing || !may_press()) return Ok{};
+  tell("The rectal wall under the probe is being prepared");
+  std::shared_ptr<const Model> model(patient.field, &patient.field->model());
+  auto made = PatientProbe::prepare(*model, patient.scenario.name);
+  if (!made) return made.error();
+  pressing.emplace(PressingProbe{model, std::move(*made), Eigen::Matrix3Xf::Zero(3, model->mesh().node_count())});
+  return Ok{};
+}
+
+Result<std::shared_ptr<const LiveImage>> ImageMaker::Parts::ultrasound() {
+  const double before = processor_ms();
+  if (!scanner) {
+    UltrasoundSettings settings = tables.ultrasound;
+    settings.gain_dB = 0.0;
+    settings.dynamic_range_dB = kImageRange_dB;
+    std::vector<TissueEcho> echoes;
+    for (const std::string& region : patient.mesh->regions) echoes.push_back(tissue_of(patient.scenario, region).echo);
+    auto made = UltrasoundScanner::create(*patient.mesh, echoes, settings);
+    if (!made) return made.error();
+    scanner.emplace(std::move(*made));
+  }
+  const ProbeKind kind = tables.probe.kind == ProbeKind::none ? ProbeKind::biplane : tables.probe.kind;
+  const ProbePlace place = probe_place(tables.probe, *seat);
+  Moment shown_moment = moment;
+  std::optional<double> force_N;
+  if (pressing) force_N = pressing->press(tables.probe, shown_moment);
+  const auto array = shown == ShownImage::sagittal ? UltrasoundArray::sagittal : UltrasoundArray::transverse;
+  const PolarPicture picture = scanner->scan(shown_moment, kind, place, array);
+  const UltrasoundBeams& beams = picture.beams;
+  const double width = beams.step * (beams.lines - 1);
+  auto image = std::make_shared<LiveImage>();
+  image->rows = static_cast<std::uint32_t>(beams.lines);
+  image->columns = static_cast<std::uint32_t>(beams.samples);
+  image->pixels.assign(picture.grey.begin(), picture.grey.end());
+  image->text = ImageJson{{"modality", "ultrasound"},
+                          {"time_s", moment.time_s},
+                          {"array", to_string(shown)},
+                          {"radius_mm", beams.surface_mm},
+                          {"depth_mm", beams.sample_mm * (beams.samples - 1)},
+                          {"focus_mm", tables.ultrasound.focus_mm},
+                          {"sector_deg", beams.sector ? width * 180.0 / std::numbers::pi : 0.0},
+                          {"first_mm", beams.sector ? 0.0 : beams.first},
+                          {"length_mm", beams.sector ? 0.0 : width},
+                          {"range_dB", kImageRange_dB},
+                          {"origin_mm", json_of(beams.origin_mm)},
+                          {"right", json_of(beams.across)},
+                          {"up", json_of(beams.ahead)},
+                          {"probe", probe_json(place, force_N)},
+                          {"took_ms", processor_ms() - before}}
+                    .dump();
+  return std::shared_ptr<const LiveImage>(std::move(image));
+}
+
+Result<std::shared_ptr<const LiveImage>> ImageMaker::Parts::xray() {
+  const double before = processor_ms();
+  if (!fluoroscope) {
+    auto made = Fluoroscope::create(*patient.mesh, tables.fluoroscopy);
+    if (!made) return made.error();
+    fluoroscope = std::move(*made);
+  }
+  Moment shown_moment = moment;
+  ImageJson probe = nullptr;
+  if (pressing) probe = probe_json(probe_place(tables.probe, *seat), pressing->press(tables.probe, shown_moment));
+  const Picture& picture = fluoroscope->expose(shown_moment);
+  auto image = std::make_shared<LiveImage>();
+  image->rows = static_cast<std::uint32_t>(picture.rows);
+  image->columns = static_cast<std::uint32_t>(picture.columns);
+  image->pixels = picture.pixels;
+  image->text = ImageJson{{"modality", "xray"},
+                          {"time_s", moment.time_s},
+                          {"angle_deg", tables.fluoroscopy.angle_deg},
+                          {"cranial_deg", tables.fluoroscopy.cranial_deg},
+                          {"energy_keV", tables.fluoroscopy.energy_keV},
+                          {"mm_per_pixel", picture.mm_per_pixel},
+                          {"probe", std::move(probe)},
+                          {"took_ms", processor_ms() - before}}
+                    .dump();
+  return std::shared_ptr<const LiveImage>(std::move(image));
+}
+
+Result<std::shared_ptr<const LiveImage>> ImageMaker::make(const std::function<void(const std::string&)>& tell) {
+  if (!parts_->patient.mesh) return std::shared_ptr<const LiveImage>();
+  const bool is_xray = parts_->shown == ShownImage::xray;
+  if (!is_xray || parts_->may_press()) {
+    if (auto prepared = parts_->prepare_probe(tell); !prepared) return prepared.error();
+  }
+  return is_xray ? parts_->xray() : parts_->ultrasound();
+}
+
+}  // namespace stylet::serve

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "image_desk.hpp"
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace stylet::serve {
+
+/// Makes the pictures of an ImageDesk: holds the patient, the probe, the scanner and the X-ray unit. For one thread.
+class ImageMaker {
+ public:
+  ImageMaker();
+  ~ImageMaker();
+
+  void open(ImageSubject patient);
+  /// @param tables scenario whose tables of probe, ultrasound and X-ray count
+  void set(ShownImage shown, const Scenario& tables);
+  /// Takes the state of the loop: the displacement is computed from the forces.
+  void take(double time_s, std::span<const TissueForce> forces, const ShownNeedle& needle,
+            const std::vector<ShownSeed>& seeds);
+  void take(Moment moment);
+
+  /// The picture of the last moment. @param tell is told what is being prepared, since that takes seconds
+  /// Errors: the patient has no place for a probe.
+  Result<std::shared_ptr<const LiveImage>> make(const std::function<void(const std::string&)>& tell);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace stylet::serve

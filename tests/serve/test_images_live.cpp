@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Ultrasound and X-ray over the live protocol.
+#include "serving.hpp"
+
+#include <gtest/gtest.h>
+
+using namespace stylet;
+using namespace stylet::test;
+
+namespace {
+
+/// box_patient() with a rectum behind the gland.
+TetMesh patient_with_rectum() {
+  TetMesh mesh = box_patient();
+  mesh.regions.emplace_back("rectum");
+  const int rectum = mesh.region_index("rectum");
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    Vec3 middle = Vec3::Zero();
+    for (const Index node : mesh.tets[t]) middle += 0.25 * mesh.nodes[static_cast<std::size_t>(node)];
+    const bool is_gland = mesh.regions[static_cast<std::size_t>(mesh.tet_region[t])] == "prostate";
+    if (!is_gland && std::hypot(middle.x(), middle.y() - 28.0) < 9.0) mesh.tet_region[t] = rectum;
+  }
+  return mesh;
+}
+
+serve::CaseSource case_with_rectum() {
+  return {"with a rectum", [](const Progress& progress) -> Result<serve::LoadedCase> {
+            auto model = Model::compile(hole_scenario(), patient_with_rectum(), "case.toml", {}, progress);
+            if (!model) return model.error();
+            return serve::LoadedCase{*model, {}};
+          }};
+}
+
+/// A page that holds the needle.
+struct Imaging {
+  Serving serving;
+  std::unique_ptr<LiveClient> page = ready_client(serving);
+
+  explicit Imaging(const serve::CaseSource& source)
+      : serving([&](serve::ServerSettings& s) { s.session.cases = {source}; }) {
+    page->command(R"({"do":"take"})");
+    EXPECT_TRUE(page->until([&] { return page->status.value("you_hold", false); }));
+  }
+};
+
+}  // namespace
+
+TEST(LiveImages, come_while_a_page_looks_at_them) {
+  Imaging at(case_with_rectum());
+  LiveClient& page = *at.page;
+  EXPECT_EQ(page.status["image"]["shown"], "none");
+  EXPECT_EQ(page.images, 0u);
+  page.command(R"({"do":"image","show":"transverse"})");
+  ASSERT_TRUE(page.until([&] { return page.images > 0; }));
+  EXPECT_EQ(page.image["modality"], "ultrasound");
+  EXPECT_EQ(page.image["array"], "transverse");
+  EXPECT_GT(*std::max_element(page.pixels.begin(), page.pixels.end()), 100);
+  const double z = page.image["probe"]["depth_mm"];
+  // The stepper moves the array.
+  page.command(R"({"do":"set","key":"probe.depth_mm","value":)" + std::to_string(z + 5.0) + "}");
+  ASSERT_TRUE(page.until([&] { return std::abs(page.image["probe"]["depth_mm"].get<double>() - z - 5.0) < 1e-6; }));
+  EXPECT_NEAR(page.image["origin_mm"][2], z + 5.0, 1e-6);
+  page.command(R"({"do":"image","show":"sagittal"})");
+  ASSERT_TRUE(page.until([&] { return page.image["array"] == "sagittal"; }));
+  EXPECT_EQ(page.image["sector_deg"], 0.0);
+  page.command(R"({"do":"image","show":"xray"})");
+  ASSERT_TRUE(page.until([&] { return page.image["modality"] == "xray"; }));
+  page.command(R"({"do":"image","show":"none"})");
+  ASSERT_TRUE(page.until([&] { return page.status["image"]["shown"] == "none"; }));
+}
+
+TEST(LiveImages, what_cannot_be_is_said_in_words) {
+  Imaging at(box_case("without a rectum"));
+  LiveClient& page = *at.page;
+  page.command(R"({"do":"image","show":"transverse"})");
+  ASSERT_TRUE(page.until([&] { return !page.status["image"]["problem"].get<std::string>().empty(); }));
+  EXPECT_NE(page.status["image"]["problem"].get<std::string>().find("no rectum"), std::string::npos);
+  page.command(R"({"do":"set","key":"probe.lift_mm","value":1000})");
+  ASSERT_TRUE(page.until([&] { return page.notices.size() == 1; }));
+  EXPECT_NE(page.notices[0]["text"].get<std::string>().find("probe.lift_mm"), std::string::npos);
+  page.command(R"({"do":"set","key":"needle.diameter_mm","value":1})");
+  ASSERT_TRUE(page.until([&] { return page.notices.size() == 2; }));
+  EXPECT_NE(page.notices[1]["text"].get<std::string>().find("not a key of the pictures"), std::string::npos);
+  page.command(R"({"do":"image","show":"photograph"})");
+  ASSERT_TRUE(page.until([&] { return page.notices.size() == 3; }));
+  // X-ray needs no rectum.
+  page.command(R"({"do":"image","show":"xray"})");
+  ASSERT_TRUE(page.until([&] { return page.images > 0 && page.status["image"]["problem"] == ""; }));
+}
+
+TEST(LiveImages, show_the_needle_and_a_replay) {
+  Imaging at(case_with_rectum());
+  LiveClient& page = *at.page;
+  page.command(R"({"do":"image","show":"xray"})");
+  ASSERT_TRUE(page.until([&] { return page.images > 0 && page.time_s > 0.1; }));
+  page.command(R"({"do":"set","key":"fluoroscopy.photons","value":0})");
+  const auto before = page.images;
+  ASSERT_TRUE(page.until([&] { return page.images > before + 1; }));
+  const std::vector<unsigned char> without = page.pixels;
+  page.hand(28.0F, 100.0F);
+  ASSERT_TRUE(page.until([&] { return page.depth_mm > 27.9F; }));
+  ASSERT_TRUE(page.until([&] {  // the needle is in the picture
+    std::size_t darker = 0;
+    for (std::size_t k = 0; k < without.size(); ++k) darker += page.pixels[k] + 10 < without[k] ? 1 : 0;
+    return darker > 100;
+  }));
+  const std::string name = page.status["recording"]["name"];
+  page.command(R"({"do":"replay","name":")" + name + R"("})");
+  ASSERT_TRUE(page.until([&] { return page.status.value("mode", "") == "replay"; }));
+  page.command(R"({"do":"seek","time_s":1000})");
+  const auto live = page.images;
+  ASSERT_TRUE(page.until([&] { return page.images > live && page.image["time_s"].get<double>() > 0.0; }));
+  page.command(R"({"do":"set","key":"fluoroscopy.angle_deg","value":35})");
+  ASSERT_TRUE(page.until([&] { return page.image["angle_deg"] == 35.0; })) << "a replay can be looked at otherwise";
+}
