@@ -9,10 +9,14 @@
 #include <mutex>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 namespace stylet::igtl {
 
 struct ImagePublisher::Parts {
+  Parts(Link& to, Source from, std::chrono::steady_clock::duration each)
+      : link(to), source(std::move(from)), period(each) {}
+
   Link& link;
   Source source;
   std::chrono::steady_clock::duration period;
@@ -46,7 +50,7 @@ Result<std::unique_ptr<ImagePublisher>> ImagePublisher::start(Link& link, Source
                        "Give a value within the range");
   const auto period =
       std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(1.0 / images_hz));
-  auto parts = std::unique_ptr<Parts>(new Parts{link, std::move(source), period, {}, {}, false, {}});
+  auto parts = std::make_unique<Parts>(link, std::move(source), period);
   try {
     parts->thread = std::thread([&p = *parts] { p.run(); });
   } catch (const std::system_error& error) {

@@ -69,7 +69,7 @@ struct DrawnText {
   int width = 0, rows = 0;
 };
 
-void put(Sheet& sheet, const DrawnText& text, int left, int middle_row) {
+void put_text(Sheet& sheet, const DrawnText& text, int left, int middle_row) {
   constexpr int kFull = 255;
   const int top = middle_row - text.rows / 2;
   for (int row = 0; row < text.rows; ++row) {
@@ -129,11 +129,11 @@ Result<> write_picture_png(const GreyPicture& picture, const std::string& captio
   const int first = height + line / 4 + line / 2;
   const int second = first + line;
   const int behind = put_bar(sheet, line / 2, first, std::min(length, width - line), line);
-  put(sheet, DrawnText(fmt::format("{:g} mm{}{}", length_mm, scale_note.empty() ? "" : " ", scale_note), line),
-      behind + line / 2, first);
-  put(sheet, DrawnText(caption, line), line / 2, second);
+  put_text(sheet, DrawnText(fmt::format("{:g} mm{}{}", length_mm, scale_note.empty() ? "" : " ", scale_note), line),
+           behind + line / 2, first);
+  put_text(sheet, DrawnText(caption, line), line / 2, second);
   const DrawnText notice(kPictureNotice, line);
-  put(sheet, notice, width - notice.width - line / 2, first);
+  put_text(sheet, notice, width - notice.width - line / 2, first);
 
   return detail::write_whole(path, [&](const std::filesystem::path& to) -> Result<> {
     vtkNew<vtkPNGWriter> writer;
