@@ -261,7 +261,7 @@ TEST(Fluoroscope, a_boundary_that_moves_moves_its_shadow) {
   EXPECT_NEAR(moved * unit->geometry().pixel_mm, 4.0, unit->geometry().pixel_mm);
 }
 
-/// Far below the thin slab that a fluoroscope needs as a patient.
+/// Pictures of metal alone: the patient, whom a fluoroscope needs, is a small slab beside the picture.
 struct Metal : testing::Test {
   Metal() { settings.field_mm = 20.0; }
   TetMesh mesh = named(box_mesh({-300, -1, -300}, {-250, 1, -250}, {1, 1, 1}, 0.0), "body");
