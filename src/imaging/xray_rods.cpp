@@ -66,7 +66,7 @@ class DividingPlane {
   double start_;
 };
 
-/// A ray as seen from an axis through a point: what the lengths in cylinders and balls around it need.
+/// A ray as seen from an axis through a point: the numbers from which its lengths in cylinders and balls follow.
 struct RayAtAxis {
   double square;      ///< of the ray's direction
   double along_axis;  ///< direction · axis

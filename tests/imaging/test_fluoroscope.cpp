@@ -454,14 +454,14 @@ TEST(Fluoroscope, an_exposure_does_not_allocate) {
 TEST(Fluoroscope, dense_is_dark) {
   const TetMesh mesh = urinary_tract();
   FluoroscopySettings settings = quiet();
-  settings.field_mm = 100.0;
+  settings.field_mm = 140.0;
   const auto unit = unit_for(mesh, settings);
   const GreyPicture& picture = unit->expose(moment_at_rest(mesh));
   ASSERT_EQ(picture.values.size(), 256U * 256U);
   const auto at = [&](const Vec3& x) {
     const auto place = unit->geometry().place(x);
-    return picture.values[static_cast<std::size_t>(std::lround(place.row)) * 256 +
-                          static_cast<std::size_t>(std::lround(place.column))];
+    return picture.values.at(static_cast<std::size_t>(std::lround(place.row)) * 256 +
+                             static_cast<std::size_t>(std::lround(place.column)));
   };
   EXPECT_EQ(at({45, 0, 0}), 255) << "air";
   EXPECT_LT(at({20, 0, 40}), at({20, 0, -10})) << "contrast in the bladder";
