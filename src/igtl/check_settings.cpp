@@ -21,11 +21,14 @@ Result<> in_range(const char* key, double value, double low, double high, const 
 Result<> check_names(const LinkSettings& s) {
   std::set<std::string> seen;
   for (const auto& [key, name] : {std::pair{"input", &s.input},
+                                  {"probe_input", &s.probe_input},
                                   {"base", &s.base},
                                   {"tip", &s.tip},
                                   {"force", &s.force},
                                   {"shaft", &s.shaft},
                                   {"surface", &s.surface},
+                                  {"probe", &s.probe},
+                                  {"image", &s.image},
                                   {"status", &s.status}}) {
     const std::string where = fmt::format("OpenIGTLink, name {}", key);
     if (name->empty() || std::any_of(name->begin(), name->end(), [](char c) { return c <= ' ' || c > '~'; }))
@@ -50,6 +53,7 @@ Result<> check(const LinkSettings& s) {
     return input_error("OpenIGTLink, host", "there is no host", "Give an address such as 127.0.0.1 for this machine");
   if (auto ok = in_range("poses_hz", s.poses_hz, 1.0, 1000.0, "Hz"); !ok) return ok;
   if (auto ok = in_range("surface_hz", s.surface_hz, 0.1, s.poses_hz, "Hz"); !ok) return ok;
+  if (auto ok = in_range("images_hz", s.images_hz, 0.1, s.poses_hz, "Hz"); !ok) return ok;
   if (auto ok = in_range("fresh_s", s.fresh_s, 0.01, 10.0, "s"); !ok) return ok;
   if (auto ok = in_range("max_connections", s.max_connections, 1, 64, "connections"); !ok) return ok;
   if (auto ok = in_range("give_up_s", s.give_up_s, 0.1, 600.0, "s"); !ok) return ok;

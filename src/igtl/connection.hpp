@@ -18,7 +18,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   using Socket = boost::asio::ip::tcp::socket;
   using Clock = std::chrono::steady_clock;
   using Shared = std::shared_ptr<const Bytes>;
-  enum Content { status, poses, surface, kContents };
+  enum Content { status, poses, surface, image, kContents };
 
   struct Events {
     std::function<void(const Incoming&)> message;

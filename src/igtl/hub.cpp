@@ -3,13 +3,14 @@
 
 namespace stylet::igtl {
 
-Hub::Hub(const LinkSettings& settings) : settings_(settings), input_(cut_name(settings.input)) {}
+Hub::Hub(const LinkSettings& settings)
+    : settings_(settings), input_(cut_name(settings.input)), probe_(cut_name(settings.probe_input)) {}
 
 void Hub::add(Connection::Socket socket, std::function<void()> on_end) {
   const ConnectionId id = ++last_id_;
   auto connection = std::make_shared<Connection>(
       std::move(socket), Connection::Events{
-                             .message = [this, id](const Incoming& m) { input_.hear(id, m, PoseInput::Clock::now()); },
+                             .message = [this, id](const Incoming& m) { hear(id, m); },
                              .closed =
                                  [this, id, on_end = std::move(on_end)](const std::string& garbage) {
                                    ended(id, garbage);
@@ -23,6 +24,14 @@ void Hub::add(Connection::Socket socket, std::function<void()> on_end) {
   connection->start();
 }
 
+/// Poses of the probe go to the probe alone; the state of a sender concerns both.
+void Hub::hear(ConnectionId from, const Incoming& message) {
+  const auto now = PoseInput::Clock::now();
+  const bool of_probe = message.kind == Incoming::Kind::transform && message.name == probe_.name();
+  if (of_probe || message.kind == Incoming::Kind::status) probe_.hear(from, message, now);
+  if (!of_probe) input_.hear(from, message, now);
+}
+
 void Hub::turn_away() {
   ++counted_.turned_away;
   counted_.problem = "there are max_connections connections already, so another one was refused";
@@ -30,6 +39,7 @@ void Hub::turn_away() {
 
 void Hub::ended(ConnectionId id, const std::string& garbage) {
   input_.closed(id);
+  probe_.closed(id);
   connections_.erase(id);
   if (garbage.empty()) return;
   ++counted_.garbage;
@@ -76,6 +86,7 @@ void Hub::show_state() {
   counted_.unusable = c.unusable;
   counted_.of_others = c.of_others;
   counted_.other_messages = c.other_messages;
+  counted_.probe_poses = probe_.counts().poses;
   const std::scoped_lock lock(mutex_);
   shown_ = counted_;
 }

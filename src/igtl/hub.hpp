@@ -29,6 +29,8 @@ class Hub {
 
   /// Sets the channel that receives the handle's poses.
   void feed(std::shared_ptr<PoseChannel> channel) { input_.feed(std::move(channel)); }
+  /// Sets the channel that receives the probe's poses.
+  void feed_probe(std::shared_ptr<PoseChannel> channel) { probe_.feed(std::move(channel)); }
   /// Closes all connections.
   void close();
 
@@ -40,10 +42,12 @@ class Hub {
 
  private:
   void offer(Connection& to, Connection::Content content, const Connection::Shared& bytes);
+  void hear(ConnectionId from, const Incoming& message);
   void ended(ConnectionId id, const std::string& garbage);
 
   const LinkSettings& settings_;
   PoseInput input_;
+  PoseInput probe_;
   std::map<ConnectionId, std::shared_ptr<Connection>> connections_;
   std::array<Connection::Shared, Connection::kContents> greeting_;
   ConnectionId last_id_ = 0;

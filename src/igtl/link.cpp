@@ -18,10 +18,13 @@ namespace stylet::igtl {
 
 /// `io` is declared before the members that use it. Its queue may hold sockets, so it must be destroyed after them.
 struct Link::Parts {
-  explicit Parts(const LinkSettings& s) : settings(s), hub(settings), sender(io, settings, hub) {}
+  explicit Parts(const LinkSettings& s) : settings(s), hub(settings), sender(io, settings, hub) {
+    hub.feed_probe(probe);
+  }
 
   const LinkSettings settings;
   boost::asio::io_context io{1};
+  std::shared_ptr<PoseChannel> probe = std::make_shared<PoseChannel>();
   Hub hub;
   Sender sender;
   std::unique_ptr<Transport> transport;
@@ -86,6 +89,26 @@ Result<> Link::publish_surface(Surface surface) {
   }
   parts_->sender.publish(std::move(surface));
   return Ok{};
+}
+
+Result<> Link::publish_image(stylet::Picture image) {
+  constexpr std::size_t most = std::size_t{1} << 26;
+  constexpr int longest = 65535;
+  const bool sized = image.columns > 0 && image.rows > 0 && image.columns <= longest && image.rows <= longest;
+  const std::size_t pixels = sized ? static_cast<std::size_t>(image.columns) * static_cast<std::size_t>(image.rows) : 0;
+  if (!sized || pixels > most || pixels != image.pixels.size())
+    return input_error("OpenIGTLink, image",
+                       fmt::format("{} × {} pixels with {} values are no image of at most 64 MiB", image.columns,
+                                   image.rows, image.pixels.size()),
+                       "Give a value for each pixel, and a smaller image if it is too large");
+  parts_->sender.publish(std::move(image));
+  return Ok{};
+}
+
+std::optional<Pose> Link::probe_pose() {
+  parts_->probe->fetch();
+  const TrackedPose& newest = parts_->probe->value();
+  return newest.valid ? std::optional<Pose>(pose(newest.pose)) : std::nullopt;
 }
 
 LinkState Link::state() const { return parts_->hub.state(); }

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <igtl_header.h>
+#include <igtl_image.h>
 #include <igtl_ndarray.h>
 #include <igtl_point.h>
 #include <igtl_polydata.h>
@@ -127,6 +128,30 @@ void add_surface(Bytes& out, const std::string& name, const Surface& surface) {
   const std::size_t body = begin(out, igtl_polydata_get_size(&info, IGTL_TYPE_PREFIX_NONE));
   igtl_polydata_pack(&info, out.data() + body, IGTL_TYPE_PREFIX_NONE);
   finish(out, body, "POLYDATA", name);
+}
+
+void add_image(Bytes& out, const std::string& name, const stylet::Picture& image) {
+  igtl_image_header header{};
+  header.version = IGTL_IMAGE_HEADER_VERSION;
+  header.num_components = 1;
+  header.scalar_type = IGTL_IMAGE_STYPE_TYPE_UINT8;
+  header.endian = IGTL_IMAGE_ENDIAN_BIG;
+  header.coord = IGTL_IMAGE_COORD_RAS;
+  header.size[0] = header.subvol_size[0] = static_cast<igtl_uint16>(image.columns);
+  header.size[1] = header.subvol_size[1] = static_cast<igtl_uint16>(image.rows);
+  header.size[2] = header.subvol_size[2] = 1;
+  const Vec3 middle = image.point_mm(0.5 * (image.columns - 1), 0.5 * (image.rows - 1));
+  Eigen::Map<Eigen::Matrix<float, 3, 4>> columns(header.matrix);
+  columns.col(0) = ras(image.mm_per_pixel * image.right).cast<float>();
+  columns.col(1) = ras(image.mm_per_pixel * image.down).cast<float>();
+  columns.col(2) = ras(image.mm_per_pixel * image.right.cross(image.down)).cast<float>();
+  columns.col(3) = ras(middle).cast<float>();
+  igtl_image_convert_byte_order(&header);
+  const std::size_t body = begin(out, IGTL_IMAGE_HEADER_SIZE + image.pixels.size());
+  std::memcpy(out.data() + body, &header, IGTL_IMAGE_HEADER_SIZE);
+  std::copy(image.pixels.begin(), image.pixels.end(),
+            out.begin() + static_cast<std::ptrdiff_t>(body + IGTL_IMAGE_HEADER_SIZE));
+  finish(out, body, "IMAGE", name);
 }
 
 void add_status(Bytes& out, const std::string& name, StatusCode code, const std::string& text) {

@@ -24,6 +24,8 @@ class PoseInput {
 
   explicit PoseInput(std::string name) : name_(std::move(name)) {}
 
+  [[nodiscard]] const std::string& name() const { return name_; }
+
   /// Sets the channel that receives the poses. It gets nothing until the next message.
   void feed(std::shared_ptr<PoseChannel> channel) { channel_ = std::move(channel); }
 

@@ -23,7 +23,7 @@ bool finite(const Picture& p) {
   const auto add = [&sum](const auto& values) {
     for (const double x : values) sum += x;
   };
-  for (const PlainPose* q : {&p.base, &p.tip}) {
+  for (const PlainPose* q : {&p.base, &p.tip, &p.probe}) {
     add(q->origin);
     add(q->rotation);
   }
@@ -40,6 +40,11 @@ Connection::Shared shared(Bytes bytes) { return std::make_shared<const Bytes>(st
 void Sender::publish(Surface surface) {
   const std::scoped_lock lock(mutex_);
   surface_ = std::move(surface);
+}
+
+void Sender::publish(stylet::Picture image) {
+  const std::scoped_lock lock(mutex_);
+  image_ = std::move(image);
 }
 
 void Sender::start() {
@@ -73,23 +78,43 @@ void Sender::turn(Clock::time_point now) {
     hub_.send(Connection::status, message);
   }
   if (have_picture_ && !hub_.empty()) hub_.send(Connection::poses, shared(poses(fresh)));
-  if (now >= surface_due_) {
-    std::optional<Surface> surface;
-    {
-      const std::scoped_lock lock(mutex_);
-      surface.swap(surface_);
-    }
-    if (surface) {
-      surface_due_ = now + period(settings_.surface_hz);
-      Bytes bytes;
-      add_surface(bytes, settings_.surface, *surface);
-      const auto message = shared(std::move(bytes));
-      hub_.greet_with(Connection::surface, message);
-      hub_.send(Connection::surface, message);
-    }
-  }
+  send_surface(now);
+  send_image(now);
   hub_.give_up(now);
   hub_.show_state();
+}
+
+void Sender::send_surface(Clock::time_point now) {
+  if (now < surface_due_) return;
+  std::optional<Surface> surface;
+  {
+    const std::scoped_lock lock(mutex_);
+    surface.swap(surface_);
+  }
+  if (!surface) return;
+  surface_due_ = now + period(settings_.surface_hz);
+  Bytes bytes;
+  add_surface(bytes, settings_.surface, *surface);
+  const auto message = shared(std::move(bytes));
+  hub_.greet_with(Connection::surface, message);
+  hub_.send(Connection::surface, message);
+}
+
+void Sender::send_image(Clock::time_point now) {
+  if (now < image_due_) return;
+  std::optional<stylet::Picture> image;
+  {
+    const std::scoped_lock lock(mutex_);
+    image.swap(image_);
+  }
+  if (!image) return;
+  // On a regular grid, so that turns that come a little late do not lower the rate; missed images are not made up for.
+  image_due_ = std::max(image_due_ + period(settings_.images_hz), now);
+  Bytes bytes;
+  add_image(bytes, settings_.image, *image);
+  const auto message = shared(std::move(bytes));
+  hub_.greet_with(Connection::image, message);
+  hub_.send(Connection::image, message);
 }
 
 /// Poses are sent only of a fresh picture, because an old one would look like a running simulation. Without a fresh
@@ -103,6 +128,7 @@ Bytes Sender::poses(bool fresh) const {
     add_transform(out, settings_.base, pose(p.base));
     add_transform(out, settings_.tip, pose(p.tip));
     add_points(out, settings_.shaft, p.shaft);
+    if (p.has_probe) add_transform(out, settings_.probe, pose(p.probe));
   }
   add_wrench(out, settings_.force, on_hand);
   const Vec3 f = ras(on_hand.force);

@@ -24,11 +24,15 @@ class Sender {
   void publish(const Picture& picture) { picture_.write(picture); }
   /// May be called from any thread.
   void publish(Surface surface);
+  /// May be called from any thread.
+  void publish(stylet::Picture image);
 
  private:
   using Clock = Connection::Clock;
   void wait();
   void turn(Clock::time_point now);
+  void send_surface(Clock::time_point now);
+  void send_image(Clock::time_point now);
   [[nodiscard]] Bytes poses(bool fresh) const;
   [[nodiscard]] Bytes heartbeat(bool fresh) const;
 
@@ -39,9 +43,11 @@ class Sender {
   bool have_picture_ = false;
   Clock::time_point picture_time_;
   Clock::time_point surface_due_;
+  Clock::time_point image_due_;
   Clock::time_point heartbeat_due_;
   std::mutex mutex_;
-  std::optional<Surface> surface_;  ///< guarded by the mutex: the newest surface that has not been sent
+  std::optional<Surface> surface_;    ///< guarded by the mutex: the newest surface that has not been sent
+  std::optional<stylet::Picture> image_;  ///< guarded by the mutex: the newest image that has not been sent
 };
 
 }  // namespace stylet::igtl

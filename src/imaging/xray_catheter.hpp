@@ -29,8 +29,8 @@ class XrayCatheter {
   };
 
   bool balloon_ = false;
-  double contrast_per_mm_ = 0.0;  ///< what the contrast adds to tissue [1/mm]
-  double balloon_per_mm_ = 0.0;   ///< what the balloon adds to the filling of the bladder [1/mm]
+  double contrast_per_mm_ = 0.0;  ///< attenuation that the contrast adds to tissue [1/mm]
+  double balloon_per_mm_ = 0.0;   ///< attenuation that it adds to the bladder's filling [1/mm]
   std::size_t arc_points_ = 0;
   double end_mm_ = 0.0;           ///< distance of the uppermost point to the urethra's upper end
   std::vector<Vec3> at_rest_;     ///< [mm] LPS of the points in the urethra, from inferior to superior

@@ -134,9 +134,10 @@ void XrayDetector::shade(int pixels, std::span<const float> depths, std::span<st
   const float bright = total > 0 ? quantile(kBright) : 0.0F;
   const float dark = total > 0 ? std::max(quantile(kDark), bright + kNarrowest) : 1.0F;
   constexpr float kWhite = 255.0F;
+  constexpr float kHalf = 0.5F;  // rounds to the nearest
   const float per_depth = kWhite / (dark - bright);
   for (std::size_t k = 0; k < depths.size(); ++k)
-    shades[k] = static_cast<std::uint8_t>(std::clamp((dark - depths[k]) * per_depth, 0.0F, kWhite) + 0.5F);
+    shades[k] = static_cast<std::uint8_t>(std::clamp((dark - depths[k]) * per_depth + kHalf, kHalf, kWhite + kHalf));
 }
 
 }  // namespace stylet

@@ -15,7 +15,7 @@ struct DepthInterval {
   [[nodiscard]] double length() const { return std::max(0.0, to - from); }
 };
 
-DepthInterval joined(const DepthInterval& a, const DepthInterval& b) {
+DepthInterval joined_intervals(const DepthInterval& a, const DepthInterval& b) {
   if (a.length() <= 0.0) return b;
   if (b.length() <= 0.0) return a;
   return {std::min(a.from, b.from), std::max(a.to, b.to)};
@@ -66,7 +66,7 @@ class DividingPlane {
   double start_;
 };
 
-/// A ray as seen from an axis through a point: what the lengths in cylinders and balls around it need.
+/// A ray as seen from an axis through a point: the numbers from which its lengths in cylinders and balls follow.
 struct RayAtAxis {
   double square;      ///< of the ray's direction
   double along_axis;  ///< direction · axis
@@ -116,7 +116,8 @@ class AroundAxis {
   }
   /// In a capsule: a cylinder of length 2 half with balls at its ends.
   [[nodiscard]] DepthInterval in_capsule(const RayAtAxis& ray, double radius, double half) const {
-    return joined(joined(in_rod(ray, radius, half), in_ball(ray, radius, half)), in_ball(ray, radius, -half));
+    return joined_intervals(joined_intervals(in_rod(ray, radius, half), in_ball(ray, radius, half)),
+                            in_ball(ray, radius, -half));
   }
 
  private:

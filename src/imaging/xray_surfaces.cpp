@@ -111,7 +111,7 @@ double XraySurfaces::shell_at(const Triangle& triangle, int corner, const XrayGe
 
 void XraySurfaces::add_triangle(const Triangle& triangle, const XrayGeometry& unit, std::span<float> sums) {
   const bool bone = triangle.bone >= 0;
-  std::array<Vertex, 3> v;
+  std::array<Vertex, 3> v{};
   for (std::size_t k = 0; k < 3; ++k) {
     const Corner& corner = corners_[static_cast<std::size_t>(triangle.corners[k])];
     v[k] = {corner.column, corner.row, corner.nearer, 0.0};

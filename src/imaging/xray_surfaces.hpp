@@ -29,12 +29,12 @@ class XraySurfaces {
     double nearer;  ///< 1 − d / depth, where d is the distance of source and centre; linear on a plane in the picture
   };
   struct Triangle {
-    std::array<Index, 3> corners;  ///< numbers of corners, counter-clockwise seen from outside
-    double step_per_mm;            ///< μ inside less μ outside
-    Index bone = -1;               ///< number of the first of three normals, if it bounds a bone
+    std::array<Index, 3> corners{};  ///< numbers of corners, counter-clockwise seen from outside
+    double step_per_mm = 0.0;        ///< μ inside less μ outside
+    Index bone = -1;                 ///< number of the first of three normals, if it bounds a bone
   };
   struct Vertex {
-    double column, row, nearer, shell;
+    double column = 0.0, row = 0.0, nearer = 0.0, shell = 0.0;
   };
 
   void add_triangle(const Triangle& triangle, const XrayGeometry& unit, std::span<float> sums);

@@ -205,7 +205,7 @@ TEST(Link, unknown_messages_pass) {
   text->SetDeviceName("Command");
   text->SetString("hello");
   for (int k = 0; k < 10; ++k) peer.send(packed(*text));
-  peer.send(library_transform("ProbeToReference", at(1, 2, 3)));
+  peer.send(library_transform("ToolToReference", at(1, 2, 3)));
   peer.send(library_transform("HandleToReference", at(1, 2, 3)));
   EXPECT_TRUE(reaches(*link, [](const auto& s) { return s.poses == 1 && s.other_messages == 11; }));
   EXPECT_EQ(link->state().garbage, 0);
@@ -267,6 +267,9 @@ TEST(Link, settings_out_of_range_are_refused) {
   refused([](auto& s) { s.poses_hz = 0.0; }, "poses_hz");
   refused([](auto& s) { s.poses_hz = std::numeric_limits<double>::quiet_NaN(); }, "poses_hz");
   refused([](auto& s) { s.surface_hz = 100.0; }, "surface_hz");
+  refused([](auto& s) { s.images_hz = 100.0; }, "images_hz");
+  refused([](auto& s) { s.probe_input = s.probe; }, "twice");
+  refused([](auto& s) { s.image = ""; }, "image");
   refused([](auto& s) { s.fresh_s = 0.0; }, "fresh_s");
   refused([](auto& s) { s.max_connections = 0; }, "max_connections");
   refused([](auto& s) { s.give_up_s = 0.0; }, "give_up_s");

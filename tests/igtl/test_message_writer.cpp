@@ -5,6 +5,7 @@
 #include "library_messages.hpp"
 
 #include <gtest/gtest.h>
+#include <igtlImageMessage.h>
 #include <igtlPointMessage.h>
 #include <igtlStringMessage.h>
 #include <igtl_header.h>
@@ -124,6 +125,39 @@ TEST(MessageWriter, surface) {
   EXPECT_EQ(std::vector<igtl_uint32>(info.polygons, info.polygons + 8),
             (std::vector<igtl_uint32>{3, 0, 2, 1, 3, 0, 1, 3}));
   igtl_polydata_free_info(&info);
+}
+
+TEST(MessageWriter, image) {
+  stylet::Picture image;
+  image.columns = 3;
+  image.rows = 2;
+  image.mm_per_pixel = 0.5;
+  image.mm_per_pixel = 0.25;
+  image.corner_mm = {10, 20, 30};
+  image.right = {0, 1, 0};  // to posterior
+  image.down = {0, 0, -1};  // to inferior
+  image.pixels = {1, 2, 3, 4, 5, 6};
+  Bytes bytes;
+  add_image(bytes, "Image_Reference", image);
+  const auto message = unpacked<::igtl::ImageMessage>(bytes, "IMAGE", "Image_Reference");
+  int width = 0, height = 0, slices = 0;
+  message->GetDimensions(width, height, slices);
+  EXPECT_EQ((std::array{width, height, slices}), (std::array{3, 2, 1}));
+  EXPECT_EQ(message->GetScalarType(), ::igtl::ImageMessage::TYPE_UINT8);
+  EXPECT_EQ(message->GetNumComponents(), 1);
+  EXPECT_EQ(message->GetCoordinateSystem(), ::igtl::ImageMessage::COORDINATE_RAS);
+  const auto* values = static_cast<const std::uint8_t*>(message->GetScalarPointer());
+  EXPECT_EQ(std::vector<std::uint8_t>(values, values + 6), image.pixels);
+  std::array<float, 3> spacing{};
+  message->GetSpacing(spacing.data());
+  EXPECT_EQ(spacing, (std::array{0.5F, 0.25F, 0.5F}));
+  // The library gives directions of unit length and the middle of the image as the origin, RAS: one pixel to posterior
+  // and half a pixel to inferior from the first.
+  ::igtl::Matrix4x4 m;
+  message->GetMatrix(m);
+  const float expected[4][4] = {{0, 0, 1, -10}, {-1, 0, 0, -20.5F}, {0, -1, 0, 29.875F}, {0, 0, 0, 1}};
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) EXPECT_NEAR(m[i][j], expected[i][j], 1e-5) << i << ' ' << j;
 }
 
 TEST(MessageWriter, heartbeat) {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <vector>
+#include <cmath>
 
 namespace stylet {
 namespace {
@@ -20,8 +20,8 @@ TEST(XrayMaterials, attenuation_is_that_of_the_tables) {
   EXPECT_NEAR(per_cm(XrayMaterial::iron, 60.0), 1.205 * 7.874, 1e-9);
 }
 
-/// Water, titanium and lead-free bone without coherent scattering: 0.21 and 5.1 cm⁻¹ at 50 keV, 0.18 and 1.65 cm⁻¹ at
-/// 80 keV (J Nucl Med, table of attenuation of implants). With coherent scattering they are a few percent larger.
+/// Without coherent scattering, water and titanium have 0.21 and 5.1 cm⁻¹ at 50 keV, 0.18 and 1.65 cm⁻¹ at 80 keV, by a
+/// table of the attenuation of implants in J Nucl Med.
 TEST(XrayMaterials, attenuation_is_a_little_more_than_published_values_without_coherent_scattering) {
   const auto a_little_more = [](double value, double published) {
     EXPECT_GT(value, published);

@@ -3,10 +3,12 @@
 
 #include "stylet/core/result.hpp"
 #include "stylet/igtl/picture.hpp"
+#include "stylet/imaging/picture.hpp"
 #include "stylet/realtime/device.hpp"
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace stylet::igtl {
@@ -20,18 +22,22 @@ enum class Role {
 /// OpenIGTLink header has no more room.
 struct LinkSettings {
   Role role = Role::server;
-  std::string host = "127.0.0.1";           ///< server: address to listen at; client: host to connect to
-  int port = 18944;                         ///< 1…65535; 0 makes a server take any free port
-  std::string input = "HandleToReference";  ///< name of the TRANSFORM with the wanted pose of the base
+  std::string host = "127.0.0.1";                  ///< server: address to listen at; client: host to connect to
+  int port = 18944;                                ///< 1…65535; 0 makes a server take any free port
+  std::string input = "HandleToReference";         ///< name of the TRANSFORM with the wanted pose of the base
+  std::string probe_input = "StepperToReference";  ///< name of the TRANSFORM with the wanted pose of the probe
   // Device names of the messages that the link sends.
   std::string base = "NeedleBaseToReference";
   std::string tip = "NeedleTipToReference";
   std::string force = "BaseForce";
   std::string shaft = "NeedleShaft";
   std::string surface = "TissueSurface";
+  std::string probe = "ProbeToReference";
+  std::string image = "Image_Reference";
   std::string status = "Stylet";
   double poses_hz = 60.0;      ///< [1/s] 1…1000, rate of the messages with poses and force
   double surface_hz = 10.0;    ///< [1/s] 0.1…poses_hz, highest rate of the messages with the surface
+  double images_hz = 20.0;     ///< [1/s] 0.1…poses_hz, highest rate of the images
   double fresh_s = 0.25;       ///< [s] 0.01…10; the force of a picture older than this is not sent
   int max_connections = 8;     ///< 1…64, of a server; further connections are refused
   double give_up_s = 10.0;     ///< [s] 0.1…600; a connection that accepts no data for this time is closed
@@ -49,6 +55,7 @@ struct LinkState {
   std::int64_t poses = 0;           ///< usable poses of the handle that were received
   std::int64_t unusable = 0;        ///< received poses that were no rigid motion, or whose sender's STATUS was not OK
   std::int64_t of_others = 0;       ///< received poses of the handle while another connection had the handle
+  std::int64_t probe_poses = 0;     ///< usable poses of the probe that were received
   std::int64_t other_messages = 0;  ///< received messages of other types and names
   std::int64_t sent = 0;      ///< messages queued for connections: bundles of poses and force, surfaces, heartbeats
   std::int64_t dropped = 0;   ///< queued messages that newer ones replaced before they were sent
@@ -81,6 +88,16 @@ class Link {
   /// Call it from any thread but a real-time thread. Errors: triangles whose corners are not points of the surface;
   /// surfaces of more than 64 MiB.
   Result<> publish_surface(Surface surface);
+
+  /// Sets the image: an ultrasound or X-ray picture. It is sent at most images_hz times per second, the newest one
+  /// only, and once to every program that connects later. Call it from any thread but a real-time thread;
+  /// ImagePublisher does so from a thread of its own. Errors: a picture without pixels, with more than 64 MiB of them,
+  /// or whose size and values do not fit.
+  Result<> publish_image(stylet::Picture image);
+  /// The pose (LPS) that the other program last sent for the probe, while it is usable and its sender is connected; as
+  /// for the handle, one sender at a time moves the probe. Call it from one thread only, which may be a real-time
+  /// thread.
+  [[nodiscard]] std::optional<Pose> probe_pose();
 
   /// The state that the link's thread stored last, every 1/poses_hz. Call it from any thread but a real-time thread.
   [[nodiscard]] LinkState state() const;

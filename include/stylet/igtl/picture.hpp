@@ -19,6 +19,8 @@ struct Picture {
   PlainPose tip;                       ///< see tip_pose()
   PlainWrench on_hand;                 ///< force and torque of needle and tissue on the hand, about the base point
   std::array<Triple, kShaft> shaft{};  ///< [mm] LPS, points on the centreline, base to tip
+  bool has_probe = false;              ///< whether there is an ultrasound probe, whose pose is then sent
+  PlainPose probe;
 };
 
 /// The pose of the tip. Its axes result from transporting the axes of the base along the centreline without twist:
