@@ -156,7 +156,7 @@ TEST(LinkImages, the_probe_is_moved_from_the_other_side_and_its_pose_goes_out) {
   EXPECT_EQ(link->state().poses, 0) << "the needle is not moved by it";
   EXPECT_TRUE(comes_true([&] { return link->state().probe_poses > 0; }));
   {
-    Picture picture;
+    stylet::igtl::Picture picture;
     picture.has_probe = true;
     picture.probe = plain(probe);
     Peer display = Peer::to(link->state().port);
