@@ -141,13 +141,14 @@ Result<> check_options(const BenchArguments& arguments) {
     bool given;
     std::vector<std::string> taken_by;
   };
-  const Option options[] = {
-      {"--nodes", arguments.nodes > 0, {"remesh", "coupling", "scale", "step", "loop", "viewers", "supply", "display", "probe"}},
-      {"--contacts", arguments.contacts > 0, {"scale", "loop", "viewers"}},
-      {"--needles", arguments.needles > 0, {"together"}},
-      {"--steps", arguments.steps > 0, {"scale"}},
-      {"--seconds", arguments.seconds > 0.0, {"loop", "viewers"}},
-      {"--speed", arguments.speed > 0.0, {"supply"}}};
+  const Option options[] = {{"--nodes",
+                             arguments.nodes > 0,
+                             {"remesh", "coupling", "scale", "step", "loop", "viewers", "supply", "display", "probe"}},
+                            {"--contacts", arguments.contacts > 0, {"scale", "loop", "viewers"}},
+                            {"--needles", arguments.needles > 0, {"together"}},
+                            {"--steps", arguments.steps > 0, {"scale"}},
+                            {"--seconds", arguments.seconds > 0.0, {"loop", "viewers"}},
+                            {"--speed", arguments.speed > 0.0, {"supply"}}};
   for (const Option& option : options) {
     const std::vector<std::string>& by = option.taken_by;
     if (!option.given || std::find(by.begin(), by.end(), arguments.what) != by.end()) continue;
@@ -217,12 +218,13 @@ Command add_bench_command(CLI::App& program) {
       ->required()
       ->check(one_of({"remesh", "step", "coupling", "scale", "loop", "supply", "display", "viewers", "needle", "dose",
                       "together", "probe"}));
-  app->add_option("--nodes", arguments->nodes,
-                  fmt::format("Nodes of the largest mesh: remesh 125 to 4096 (default {}), coupling 500 or more "
-                              "(default {}), scale, supply and display 570 or more (default {}), probe 3000 or more "
-                              "(default 20000). Nodes of the only mesh: step, loop and viewers 500 or more (default {})",
-                              kRemeshNodes, measure::CouplingBenchOptions{}.largest,
-                              measure::ScaleBenchOptions{}.largest, measure::StepBenchOptions{}.nodes))
+  app->add_option(
+         "--nodes", arguments->nodes,
+         fmt::format("Nodes of the largest mesh: remesh 125 to 4096 (default {}), coupling 500 or more "
+                     "(default {}), scale, supply and display 570 or more (default {}), probe 3000 or more "
+                     "(default 20000). Nodes of the only mesh: step, loop and viewers 500 or more (default {})",
+                     kRemeshNodes, measure::CouplingBenchOptions{}.largest, measure::ScaleBenchOptions{}.largest,
+                     measure::StepBenchOptions{}.nodes))
       ->type_name("N")
       ->check(whole_number_between(1, 1000000));
   app->add_option(

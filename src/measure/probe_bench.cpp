@@ -94,8 +94,7 @@ Result<ProbedDemo> probed_demo(Index nodes, const Progress& progress) {
     if (is_target_region(mesh.regions[r])) demo.gland.push_back(static_cast<int>(r));
   }
   const Vec3 entry(15.0, 3.0, -52.0);  // of the demo's needle, around which the skin is free
-  const auto supports =
-      find_supports(mesh, *demo.topology, scenario.fixed, demo.gland, {entry}, {Vec3(Vec3::UnitZ())});
+  const auto supports = find_supports(mesh, *demo.topology, scenario.fixed, demo.gland, {entry}, {Vec3(Vec3::UnitZ())});
   if (!supports) return supports.error();
   auto tissue =
       Tissue::build(std::move(mesh), std::move(materials), supports->nodes, progress, Element::nodal_pressure);

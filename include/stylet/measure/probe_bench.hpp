@@ -25,13 +25,13 @@ Result<ProbedDemo> probed_demo(Index nodes, const Progress& progress = {});
 /// A probe that moves in the demo patient, on one mesh.
 struct ProbeRow {
   Index nodes = 0;
-  int points = 0;         ///< areas of the wall
-  long poses = 0;         ///< number of poses
+  int points = 0;                                                  ///< areas of the wall
+  long poses = 0;                                                  ///< number of poses
   double pose_p50_ms = 0.0, pose_p99_ms = 0.0, pose_max_ms = 0.0;  ///< thread CPU time of ProbeContact::press()
   double field_p50_ms = 0.0;                                       ///< of the displacement of all nodes
-  double prepare_s = 0.0;  ///< wall-clock time of the wall's compliance, without mesh and factor
-  double megabytes = 0.0;  ///< memory of the compliance
-  double force_N = 0.0;    ///< anterior-posterior, at a lift of 8 mm with the array at the gland's base
+  double prepare_s = 0.0;       ///< wall-clock time of the wall's compliance, without mesh and factor
+  double megabytes = 0.0;       ///< memory of the compliance
+  double force_N = 0.0;         ///< anterior-posterior, at a lift of 8 mm with the array at the gland's base
   double penetration_mm = 0.0;  ///< largest of all poses
 };
 

@@ -25,9 +25,9 @@ struct InsertSettings {
 
 /// The result of insert(), beside the files that it wrote.
 struct InsertResult {
-  Summary summary;             ///< forces, events, the gland's motion and warnings of the whole run
-  std::vector<Step> steps;     ///< all steps, in order of time
-  std::optional<HoleMap> map;  ///< only with InsertSettings::map
+  Summary summary;                   ///< forces, events, the gland's motion and warnings of the whole run
+  std::vector<Step> steps;           ///< all steps, in order of time
+  std::optional<HoleMap> map;        ///< only with InsertSettings::map
   std::optional<ProbeReport> probe;  ///< only with a scenario whose probe.kind is not none
 };
 

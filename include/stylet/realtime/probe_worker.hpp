@@ -41,8 +41,8 @@ class ProbeWorker {
   /// Fetches the newest answer. Calls of this and the next two from one thread only. @return whether it is a new one
   bool fetch() { return answer_.fetch(); }
   [[nodiscard]] const Answer& answer() const { return answer_.value(); }
-  /// Displacement [mm] of the nodes asked for (3 × nodes), of the answer last fetched, which must not be the one of pose
-  /// 0. It stays unchanged until the next fetch().
+  /// Displacement [mm] of the nodes asked for (3 × nodes), of the answer last fetched, which must not be the one of
+  /// pose 0. It stays unchanged until the next fetch().
   [[nodiscard]] Eigen::Map<const Eigen::Matrix3Xf> displacement() const {
     return {answer().displacement, 3, nodes_count_};
   }

@@ -52,8 +52,8 @@ Result<> remove_earlier_results(const fs::path& folder) {
 }
 
 /// Writes all files except run.h5, from run.h5 and the summary. Therefore pictures and tables show only recorded data,
-/// with three exceptions: the gland's path, which follows from the recorded forces, the map of the template's holes, and
-/// the ultrasound probe.
+/// with three exceptions: the gland's path, which follows from the recorded forces, the map of the template's holes,
+/// and the ultrasound probe.
 Result<> write_from_recording(const fs::path& folder, const Summary& summary,
                               const std::function<MatX(const VecX&)>& stress_of, const Progress& progress,
                               bool with_pictures, const HoleMap* map, const ProbeReport* probe) {

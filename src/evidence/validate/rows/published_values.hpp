@@ -99,9 +99,9 @@ inline constexpr double kLeast = 0.9;
 
 /// Change of the gland's extents and volume [%] by an endorectal coil, 79 patients. M. Osman et al. 2014. Second hand.
 namespace osman {
-inline constexpr Measured kDepth{-8.6, 7.8};   ///< anterior-posterior
-inline constexpr Measured kWidth{4.5, 5.8};    ///< left-right
-inline constexpr Measured kLength{8.8, 6.9};   ///< superior-inferior
+inline constexpr Measured kDepth{-8.6, 7.8};  ///< anterior-posterior
+inline constexpr Measured kWidth{4.5, 5.8};   ///< left-right
+inline constexpr Measured kLength{8.8, 6.9};  ///< superior-inferior
 inline constexpr Measured kVolume{0.6, 5.7};
 }  // namespace osman
 

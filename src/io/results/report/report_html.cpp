@@ -5,10 +5,10 @@
 #include "report/assets.hpp"
 #include "report/gland_section.hpp"
 #include "report/map_section.hpp"
-#include "report/probe_section.hpp"
 #include "report/narrative.hpp"
 #include "report/page_template.hpp"
 #include "report/parameter_tables.hpp"
+#include "report/probe_section.hpp"
 #include "report/report_data.hpp"
 #include "report/text.hpp"
 
