@@ -90,7 +90,8 @@ Result<Finding> flattened_gland(ProbeStudy& study, double to_percent, double bal
       10.0 + balloon_mm, found->lift_mm, -found->gland.change_percent.y(), found->force_N.norm(),
       found->force_N.norm() / creep, found->gland.change_percent.x(), found->gland.change_percent.z(),
       found->gland.volume_percent, published,
-      size == Size::length || balloon_mm > 0.0 ? "" : ", which is in the accepted range too, since patients differ much");
+      size == Size::length || balloon_mm > 0.0 ? ""
+                                               : ", which is in the accepted range too, since patients differ much");
   finding.why_missed =
       "The tissue is linear, the contact has no friction, and the demo patient is not one of the study’s patients.";
   finding.plot = {.x_label = "lift of the probe [mm]",
