@@ -6,7 +6,7 @@ include(CMakePackageConfigHelpers)
 set(STYLET_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/stylet)
 
 install(TARGETS stylet EXPORT stylet-targets)
-foreach(module core geom dose fem needle coupling sim realtime)
+foreach(module core geom dose fem needle coupling sim probe imaging realtime)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/stylet/${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/stylet)
 endforeach()
 # The component `files`: from a patient's file to a result folder. Its libraries are static, so who links them needs

@@ -268,7 +268,7 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
   if (result->probe) {
     Facts probe;
     for (const ProbeFact& fact : probe_facts(*result->probe)) probe.add(fact.name, fact.text);
-    console.say(probe.text());
+    console.say(probe.text() + "\n");
   }
   console.say(summary_text(summary));
   if (result->map) console.say("\n" + map_text(*result->map));

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace stylet {
@@ -44,20 +45,21 @@ Result<PatientProbe> PatientProbe::prepare(const Patient& patient, const ProbeSe
   if (!seat) return seat.error();
   const auto faces = rectal_wall(mesh, patient.topology, where);
   if (!faces) return faces.error();
-  ProbeSettings rest = settings;
-  rest.lift_mm = 0.0;
-  rest.tilt_deg = 0.0;
-  rest.roll_deg = 0.0;
+  // The areas are those around a probe at the level of the gland, whatever its depth, so that the force is the same
+  // function of the pose for every scenario.
+  ProbeSettings rest;
+  rest.diameter_mm = settings.diameter_mm;
+  rest.balloon_mm = settings.balloon_mm;
   const ProbePlace middle = probe_place(rest, *seat);
   WallReach reach;
   reach.rest = capsule_of(middle);
   reach.finest = middle.axes.col(1);
   reach.lowest_mm = lowest_level_mm(mesh, *faces, reach.rest);
+  reach.beyond_mm += std::max(0.0, settings.depth_mm.value_or(seat->gland_mm) - seat->gland_mm);
   std::vector<WallPoint> points = wall_points(patient.tissue, *faces, reach);
   if (points.empty())
-    return input_error(where,
-                       fmt::format("its rectum is not where the probe is, at z = {:.1f} mm", middle.origin_mm.z()),
-                       "Set probe.depth_mm to a level at which the patient has a rectum");
+    return input_error(where, "no part of its rectum is near the axis of the probe",
+                       "Check the structure rectum, or set probe.kind = \"none\"");
   auto wall =
       std::make_shared<const WallCompliance>(WallCompliance::solve(patient.tissue, std::move(points), progress));
   PatientProbe probe(*seat, ProbeContact(std::move(wall)), GlandMeasure(mesh, patient.topology, patient.gland_regions));

@@ -150,6 +150,8 @@ void make_room_for_probe(TissueParameters& inside) {
   inside.young_kPa = 0.5;
   inside.poisson = 0.1;
   inside.stiffening = 0.0;
+  inside.cutting_N = 0.004;  // with this modulus the lag of the cut stays within millimetres
+  inside.puncture_N = 0.0;
   inside.source =
       "stated: around a probe the lumen holds gel and gas, which give way and flow off; other values as without a "
       "probe";

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""stylet bench step, loop, viewers, supply and display: the contents of their rows on the coarsest mesh. Times are not
-checked."""
+"""stylet bench step, loop, viewers, supply, probe and display: the contents of their rows on the coarsest mesh. Times
+are not checked."""
 import unittest
 
 from program import InFolder
@@ -70,6 +70,18 @@ class SupplyBench(InFolder):
         self.assertLess(row["force_off_N"], row["force_peak_N"])
         self.refuse("bench", "supply", "--nodes", "569", says=["--nodes", "569", "570"])
         self.refuse("bench", "supply", "--speed", "0", says=["--speed", "0"])
+
+
+class ProbeBench(InFolder):
+    def test_a_moving_probe_never_goes_into_the_wall(self):
+        (row,) = self.json_of("bench", "probe", "--nodes", "3000")["rows"]
+        self.assertTrue(120 <= row["points"] <= 150)
+        self.assertGreater(row["poses"], 400)
+        self.assertTrue(0 < row["pose_cpu_ms"]["p50"] <= row["pose_cpu_ms"]["p99"] <= row["pose_cpu_ms"]["max"])
+        self.assertGreater(row["megabytes"], 1)
+        self.assertGreater(row["force_N"], 1)
+        self.assertLessEqual(row["penetration_mm"], 0.05)
+        self.refuse("bench", "probe", "--nodes", "2999", says=["--nodes", "2999", "3000"])
 
 
 class DisplayBench(InFolder):

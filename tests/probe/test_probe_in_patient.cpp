@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The probe in the demo patient, on meshes of several sizes.
+// The probe in the demo patient, and on large blocks.
+#include "pressed_block.hpp"
 #include "stylet/measure/probe_bench.hpp"
 #include "stylet/probe/patient_probe.hpp"
 #include "support/sanitized.hpp"
@@ -105,17 +106,19 @@ TEST_F(ProbeInPatient, the_reference_of_the_contours_is_not_deformed) {
   EXPECT_LT(probe.gland().change_percent.y(), -0.5);
 }
 
-TEST_F(ProbeInPatient, force_does_not_depend_on_the_mesh) {
+TEST(ProbeOnBlocks, force_is_the_same_on_5000_20000_and_40000_nodes) {
   if (test::kSanitized) GTEST_SKIP() << test::kTooLongSanitized;
-  const auto force = [](Index nodes, double lift) {
-    PatientProbe& probe = *made(nodes).probe;
-    return probe.press(at(probe, 15.0, lift)).force_N.y();
+  const auto force = [](int cells, std::size_t least) {
+    const testing::Block block = testing::soft_block(cells, 0.0);
+    EXPECT_GE(block.tissue->mesh().nodes.size(), least);
+    ProbeContact contact(block.wall(testing::reach_of(testing::lying_on(0.0), 2.5)));
+    return contact.press(testing::lying_on(5.0)).force_N.z();
   };
-  for (const double lift : {6.0, 10.0}) {
-    const double fine = force(20000, lift);
-    EXPECT_NEAR(force(5000, lift) / fine, 1.0, 0.05) << "lift " << lift;
-    EXPECT_NEAR(force(10000, lift) / fine, 1.0, 0.05) << "lift " << lift;
-  }
+  const double coarse = force(20, 4800);
+  const double fine = force(33, 19000);
+  const double finest = force(42, 39000);
+  EXPECT_NEAR(coarse / finest, 1.0, 0.05);
+  EXPECT_NEAR(fine / finest, 1.0, 0.05);
 }
 
 }  // namespace
