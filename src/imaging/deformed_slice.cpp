@@ -13,6 +13,10 @@ void DeformedSlice::place(const UltrasoundBeams& beams, const Eigen::Matrix3Xf& 
     const Vec3 x = mesh_->nodes[static_cast<std::size_t>(node)] + displacement.col(node).cast<double>();
     places_.col(node) = to_plane * x - origin;
   }
+  for (std::size_t line = 0; line < starts_.size(); ++line) {
+    starts_[line] = beams.start_mm(static_cast<double>(line));
+    ways_[line] = beams.direction(static_cast<double>(line));
+  }
 }
 
 DeformedSlice::Lines DeformedSlice::lines_of(const UltrasoundBeams& beams,
