@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kRodStep_mm = 0.15;  // of the points along a rod
 constexpr double kFacetsWide = 0.7;   // extent of the facets across the lines, in diameters
-constexpr double kTail_mm = 5.0;      // length over which a comet tail falls to 1/e
+constexpr double kTail_mm = 3.5;      // length over which a comet tail falls to 1/e
 
 float amplitude_of(float dB) { return std::pow(10.0F, dB / 20.0F); }
 
@@ -47,7 +47,7 @@ RodLook needle_look(double diameter_mm) {
           .reverberations = 6,
           .reverberation_mm = 0.9 * diameter_mm,
           .reverberation_share = 0.36F,
-          .tail_share = 0.07F,
+          .tail_share = 0.16F,
           .shade = 0.45F};
 }
 
@@ -58,7 +58,7 @@ RodLook seed_look(double diameter_mm) {
           .reverberations = 3,
           .reverberation_mm = 1.2 * diameter_mm,
           .reverberation_share = 0.35F,
-          .tail_share = 0.03F,
+          .tail_share = 0.08F,
           .shade = 0.25F};
 }
 

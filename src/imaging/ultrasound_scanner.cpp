@@ -243,9 +243,9 @@ void UltrasoundScanner::Parts::add_borders() {
     field.add(hit.line, sample + rough, strength, 0.5F + 0.6F * patch.real(), 0.4F * patch.imag());
     if (hit.roughness_mm < 0.2) continue;
     // Parts of a rough surface lie deeper, differently from line to line.
-    for (int k = 1; k <= 4; ++k) {
+    for (int k = 1; k <= 6; ++k) {
       const std::complex<float> part = lattice.at(lattice.position((1.0 + 0.3 * k) * hit.at));
-      field.add(hit.line, sample + std::abs(rough) + 0.3 * k / beams.sample_mm, 0.6F * strength / static_cast<float>(k),
+      field.add(hit.line, sample + std::abs(rough) + 0.18 * k / beams.sample_mm, 0.5F * strength / static_cast<float>(k),
                 part.real(), part.imag());
     }
   }
