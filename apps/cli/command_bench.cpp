@@ -141,14 +141,14 @@ Result<> check_options(const BenchArguments& arguments) {
     bool given;
     std::vector<std::string> taken_by;
   };
-  const Option options[] = {
-      {"--nodes", arguments.nodes > 0, {"remesh", "coupling", "scale", "step", "loop", "viewers", "supply", "display",
-        "image"}},
-      {"--contacts", arguments.contacts > 0, {"scale", "loop", "viewers"}},
-      {"--needles", arguments.needles > 0, {"together"}},
-      {"--steps", arguments.steps > 0, {"scale"}},
-      {"--seconds", arguments.seconds > 0.0, {"loop", "viewers"}},
-      {"--speed", arguments.speed > 0.0, {"supply"}}};
+  const Option options[] = {{"--nodes",
+                             arguments.nodes > 0,
+                             {"remesh", "coupling", "scale", "step", "loop", "viewers", "supply", "display", "image"}},
+                            {"--contacts", arguments.contacts > 0, {"scale", "loop", "viewers"}},
+                            {"--needles", arguments.needles > 0, {"together"}},
+                            {"--steps", arguments.steps > 0, {"scale"}},
+                            {"--seconds", arguments.seconds > 0.0, {"loop", "viewers"}},
+                            {"--speed", arguments.speed > 0.0, {"supply"}}};
   for (const Option& option : options) {
     const std::vector<std::string>& by = option.taken_by;
     if (!option.given || std::find(by.begin(), by.end(), arguments.what) != by.end()) continue;
@@ -210,14 +210,15 @@ Command add_bench_command(CLI::App& program) {
          "of a step; coupling: force of one insertion against mesh, spacing of contacts and time step, with the near "
          "field and with node addition; scale: time of a step against the number of nodes and contacts; loop: duration "
          "and lateness of the steps of the real-time loop; supply: speeds that a needle can have where no compliance "
-         "was precomputed; display: time and error of a picture of the deformed patient; image: time of an ultrasound picture; viewers: time of the steps of "
+         "was precomputed; display: time and error of a picture of the deformed patient; image: time of an ultrasound "
+         "picture; viewers: time of the steps of "
          "a live session without viewers and with two viewers; needle: accuracy of the needle models against their "
          "cost; dose: time of the dose rates of 100 seeds at a million points, by the formula and by a table; "
          "together: "
          "time of a step while other needles rest in the tissue")
       ->required()
-      ->check(one_of({"remesh", "step", "coupling", "scale", "loop", "supply", "display", "image", "viewers", "needle", "dose",
-                      "together"}));
+      ->check(one_of({"remesh", "step", "coupling", "scale", "loop", "supply", "display", "image", "viewers", "needle",
+                      "dose", "together"}));
   app->add_option("--nodes", arguments->nodes,
                   fmt::format("Nodes of the largest mesh: remesh 125 to 4096 (default {}), coupling 500 or more "
                               "(default {}), scale, supply and display 570 or more (default {}). Nodes of the only "

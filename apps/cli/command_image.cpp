@@ -191,7 +191,8 @@ Result<> run_image(const ImageArguments& arguments, Console& console) {
   if (volume) {
     std::vector<Picture> planes;
     for (const MadePicture& one : *made) planes.push_back(one.picture);
-    const double thickness = arguments.all ? patient->scenario.probe.step_mm : patient->scenario.ultrasound.elevation_mm;
+    const double thickness =
+        arguments.all ? patient->scenario.probe.step_mm : patient->scenario.ultrasound.elevation_mm;
     if (Result<> written = write_picture_mha(planes, thickness, output); !written) return written;
   }
   const UltrasoundSettings& settings = patient->scenario.ultrasound;
@@ -215,7 +216,8 @@ Result<> run_image(const ImageArguments& arguments, Console& console) {
 Command add_image_command(CLI::App& program) {
   auto arguments = std::make_shared<ImageArguments>();
   CLI::App* app = program.add_subcommand(
-      "image", "Make ultrasound pictures of a patient at rest, or of a recorded run, as a transrectal probe shows them");
+      "image",
+      "Make ultrasound pictures of a patient at rest, or of a recorded run, as a transrectal probe shows them");
   app->add_option("CASE", arguments->file,
                   "Scenario (TOML): the patient at rest, without a needle; or the run.h5 of a run")
       ->type_name("SCENARIO.toml|run.h5")

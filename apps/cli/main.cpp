@@ -56,7 +56,7 @@ int run(int argc, char** argv, Console& console) {
   const std::array commands{add_phantom_command(program), add_mesh_command(program),     add_info_command(program),
                             add_prepare_command(program), add_insert_command(program),   add_reproduce_command(program),
                             add_bench_command(program),   add_validate_command(program), add_serve_command(program),
-                            add_dose_command(program),    add_implant_command(program), add_image_command(program)};
+                            add_dose_command(program),    add_implant_command(program),  add_image_command(program)};
   add_common_options(program, common);  // common options may stand before or after the command
   for (const Command& command : commands) add_common_options(*command.app, common);
 

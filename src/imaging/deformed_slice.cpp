@@ -19,8 +19,7 @@ void DeformedSlice::place(const UltrasoundBeams& beams, const Eigen::Matrix3Xf& 
   }
 }
 
-DeformedSlice::Lines DeformedSlice::lines_of(const UltrasoundBeams& beams,
-                                             const std::array<Index, 4>& corners) const {
+DeformedSlice::Lines DeformedSlice::lines_of(const UltrasoundBeams& beams, const std::array<Index, 4>& corners) const {
   double low = 1e30, high = -1e30;
   bool behind = false;
   for (std::size_t a = 0; a < 4; ++a) {
@@ -37,8 +36,7 @@ DeformedSlice::Lines DeformedSlice::lines_of(const UltrasoundBeams& beams,
   }
   // A section on both sides of the half line opposite to `ahead` is seen from a sector under all angles.
   if (beams.sector && behind && (high - low) * beams.step > std::numbers::pi) return {0, beams.lines - 1};
-  return {std::max(0, static_cast<int>(std::ceil(low))),
-          std::min(beams.lines - 1, static_cast<int>(std::floor(high)))};
+  return {std::max(0, static_cast<int>(std::ceil(low))), std::min(beams.lines - 1, static_cast<int>(std::floor(high)))};
 }
 
 Vec4 DeformedSlice::weights(Index tet, const Eigen::Vector2d& in_plane) const {

@@ -24,9 +24,7 @@ double bump(double x, double middle, double half) { return 1.0 - ramp(std::abs(x
 /// The gland's box, and places in it relative to its half sides.
 struct GlandFrame {
   Eigen::AlignedBox3d box;
-  [[nodiscard]] Vec3 relative(const Vec3& x) const {
-    return (x - box.center()).cwiseQuotient(0.5 * box.sizes());
-  }
+  [[nodiscard]] Vec3 relative(const Vec3& x) const { return (x - box.center()).cwiseQuotient(0.5 * box.sizes()); }
 };
 
 /// Where a voxel lies, for the painters of tissues.
@@ -44,17 +42,23 @@ class EchoPainter {
       : gland_(gland), has_zones_(has_zones), fine_(seed), coarse_(seed + 1), third_(seed + 2) {}
 
   [[nodiscard]] double level_dB(TissueRole role, double own_dB, const Spot& spot) const {
-    const double texture =
-        1.3 * coarse_(spot.x / 6.0) + 1.0 * fine_(spot.x / 2.6) + 0.9 * third_(spot.x / 1.3);
+    const double texture = 1.3 * coarse_(spot.x / 6.0) + 1.0 * fine_(spot.x / 2.6) + 0.9 * third_(spot.x / 1.3);
     switch (role) {
-      case TissueRole::gland: return own_dB + texture + gland_dB(spot);
-      case TissueRole::zone: return own_dB + texture + capsule_dB(spot);
-      case TissueRole::urethra: return own_dB + 0.7 * texture;
-      case TissueRole::rectal_wall: return wall_dB(spot) + 0.6 * texture;
-      case TissueRole::fat: return own_dB + 1.3 * texture + fat_dB(spot);
+      case TissueRole::gland:
+        return own_dB + texture + gland_dB(spot);
+      case TissueRole::zone:
+        return own_dB + texture + capsule_dB(spot);
+      case TissueRole::urethra:
+        return own_dB + 0.7 * texture;
+      case TissueRole::rectal_wall:
+        return wall_dB(spot) + 0.6 * texture;
+      case TissueRole::fat:
+        return own_dB + 1.3 * texture + fat_dB(spot);
       case TissueRole::muscle:
-      case TissueRole::soft: return own_dB + 1.2 * texture + muscle_dB(spot);
-      default: return own_dB;
+      case TissueRole::soft:
+        return own_dB + 1.2 * texture + muscle_dB(spot);
+      default:
+        return own_dB;
     }
   }
 

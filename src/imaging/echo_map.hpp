@@ -31,9 +31,7 @@ class EchoMap {
   static constexpr float kCalcified = static_cast<float>((15.0 - kDarkest_dB) / kStep_dB);
 
   /// Transform of a material point [mm] LPS to a position on the grid.
-  [[nodiscard]] Eigen::Vector3f position(const Vec3& x) const {
-    return ((x - low_) / kVoxel_mm).cast<float>();
-  }
+  [[nodiscard]] Eigen::Vector3f position(const Vec3& x) const { return ((x - low_) / kVoxel_mm).cast<float>(); }
   [[nodiscard]] static Eigen::Vector3f difference(const Vec3& dx) { return (dx / kVoxel_mm).cast<float>(); }
 
   /// Level at a position on the grid; negative outside of the map.

@@ -36,7 +36,8 @@ void MaterialShift::compute(const UltrasoundBeams& beams, const Moment& moment, 
       if (shift.isZero()) continue;
       grid_.col(static_cast<Eigen::Index>(row) * columns_ + k) = shift.cast<float>();
       Range& touched = touched_[static_cast<std::size_t>(row)];
-      touched = touched.first > touched.last ? Range{k, k} : Range{std::min(touched.first, k), std::max(touched.last, k)};
+      touched =
+          touched.first > touched.last ? Range{k, k} : Range{std::min(touched.first, k), std::max(touched.last, k)};
     }
   };
   slice.cut(beams, fill, [&](Index tet) { return field_.reaches(tet); });
@@ -64,7 +65,9 @@ Vec3 MaterialShift::solve(const UltrasoundBeams& beams, const DeformedSlice& sli
 bool MaterialShift::touches(int line, int from, int to) const {
   const auto row = static_cast<std::size_t>(line / line_step_);
   const int low = from / kSampleStep, high = to / kSampleStep + 1;
-  const auto meets = [&](const Range& range) { return range.first <= high && range.last >= low && range.first <= range.last; };
+  const auto meets = [&](const Range& range) {
+    return range.first <= high && range.last >= low && range.first <= range.last;
+  };
   return meets(touched_[row]) || meets(touched_[row + 1]);
 }
 

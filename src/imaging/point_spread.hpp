@@ -11,7 +11,7 @@ namespace stylet {
 /// up to 1.
 class PointSpread {
  public:
-  static constexpr int kMostLines = 24;   ///< half width of the widest sum over lines
+  static constexpr int kMostLines = 24;    ///< half width of the widest sum over lines
   static constexpr int kMostSamples = 16;  ///< half width of the widest sum over samples
 
   PointSpread(const BeamProfile& profile, int samples);

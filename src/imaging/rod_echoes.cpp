@@ -131,8 +131,8 @@ void RodEchoes::add(std::span<const Vec3> centreline_mm, double diameter_mm, con
         const int line = static_cast<int>(std::lround(at.line));
         const int sample = static_cast<int>(std::floor(at.depth_mm / beams.sample_mm));
         if (line < 0 || line >= lines_ || sample < 1 || sample >= samples_) continue;
-        const std::size_t place = static_cast<std::size_t>(line) * static_cast<std::size_t>(samples_) +
-                                  static_cast<std::size_t>(sample);
+        const std::size_t place =
+            static_cast<std::size_t>(line) * static_cast<std::size_t>(samples_) + static_cast<std::size_t>(sample);
         const float amplitude = strength * mirror * share * facet.share * static_cast<float>(in_slice) * gain[place];
         field.add(at.line, at.depth_mm / beams.sample_mm, amplitude, 1.0F, 0.0F);
         float echo = amplitude;

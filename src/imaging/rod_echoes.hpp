@@ -11,14 +11,14 @@ namespace stylet {
 
 /// How a thin metal rod or a track looks in ultrasound. Levels are stated, by what transrectal pictures show.
 struct RodLook {
-  float level_dB = 30.0F;        ///< of its near side, where the beam meets it at a right angle
-  float rough_dB = -14.0F;       ///< of what its roughness reflects into all directions, relative to level_dB
-  double specular_deg = 14.0;    ///< tilt from the right angle at which the mirror-like echo is 1/e
-  int reverberations = 0;        ///< echoes between its sides behind its own
-  double reverberation_mm = 1.0; ///< their distance
+  float level_dB = 30.0F;            ///< of its near side, where the beam meets it at a right angle
+  float rough_dB = -14.0F;           ///< of what its roughness reflects into all directions, relative to level_dB
+  double specular_deg = 14.0;        ///< tilt from the right angle at which the mirror-like echo is 1/e
+  int reverberations = 0;            ///< echoes between its sides behind its own
+  double reverberation_mm = 1.0;     ///< their distance
   float reverberation_share = 0.5F;  ///< amplitude of each, relative to the one before
-  float tail_share = 0.0F;       ///< comet tail: amplitude right behind the rod, relative to the rod
-  float shade = 0.0F;            ///< share of the amplitude that does not get past the rod
+  float tail_share = 0.0F;           ///< comet tail: amplitude right behind the rod, relative to the rod
+  float shade = 0.0F;                ///< share of the amplitude that does not get past the rod
 };
 
 RodLook needle_look(double diameter_mm);
@@ -45,7 +45,7 @@ class RodEchoes {
     float shade = 0.0F;
   };
   int lines_, samples_;
-  std::vector<Source> sources_;          ///< (lines × samples)
+  std::vector<Source> sources_;           ///< (lines × samples)
   std::vector<std::uint8_t> is_touched_;  ///< (lines)
 };
 

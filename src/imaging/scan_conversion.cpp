@@ -30,8 +30,8 @@ void ScanConversion::prepare(const UltrasoundBeams& beams) {
   sources_.assign(pixels, {});
   for (int row = 0; row < picture_.rows; ++row) {
     for (int column = 0; column < picture_.columns; ++column) {
-      const BeamPoint at = beams.locate(
-          Eigen::Vector2d(left_mm_ + column * mm_per_pixel_, top_mm_ - row * mm_per_pixel_));
+      const BeamPoint at =
+          beams.locate(Eigen::Vector2d(left_mm_ + column * mm_per_pixel_, top_mm_ - row * mm_per_pixel_));
       const double sample = at.depth_mm / beams.sample_mm;
       if (at.line < 0.0 || at.line > beams.lines - 1 || sample < 0.0 || sample > beams.samples - 1) continue;
       const int line = std::min(static_cast<int>(at.line), beams.lines - 2);

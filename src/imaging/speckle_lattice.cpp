@@ -53,10 +53,9 @@ std::complex<float> SpeckleLattice::at(const Eigen::Vector3f& position) const {
     return Eigen::Map<const Eigen::Array4f>(&table_[static_cast<std::size_t>((z * kPoints + y) * kRow + x)]);
   };
   const float uy = 1.0F - t.y(), uz = 1.0F - t.z(), ux = 1.0F - t.x();
-  const Eigen::Array4f sum =
-      (uy * uz) * pair(y0, z0) + (t.y() * uz) * pair(y1, z0) + (uy * t.z()) * pair(y0, z1) + (t.y() * t.z()) * pair(y1, z1);
-  const float power =
-      (ux * ux + t.x() * t.x()) * (uy * uy + t.y() * t.y()) * (uz * uz + t.z() * t.z());
+  const Eigen::Array4f sum = (uy * uz) * pair(y0, z0) + (t.y() * uz) * pair(y1, z0) + (uy * t.z()) * pair(y0, z1) +
+                             (t.y() * t.z()) * pair(y1, z1);
+  const float power = (ux * ux + t.x() * t.x()) * (uy * uy + t.y() * t.y()) * (uz * uz + t.z() * t.z());
   const float scale = 1.0F / std::sqrt(power);
   return {scale * (ux * sum[0] + t.x() * sum[2]), scale * (ux * sum[1] + t.x() * sum[3])};
 }

@@ -9,13 +9,13 @@
 
 namespace stylet {
 
-/// Complex Gaussian noise that is fixed in the material: random numbers on a cubic lattice, linear in between, scaled so
-/// that the mean power of the result is 1 at every point. The lattice repeats after kPoints points; its axes are turned
-/// against LPS, so that no picture lies along them.
+/// Complex Gaussian noise that is fixed in the material: random numbers on a cubic lattice, linear in between, scaled
+/// so that the mean power of the result is 1 at every point. The lattice repeats after kPoints points; its axes are
+/// turned against LPS, so that no picture lies along them.
 class SpeckleLattice {
  public:
-  static constexpr int kPoints = 64;            ///< along an axis
-  static constexpr double kSpacing_mm = 0.2;    ///< of points; smaller than what the beam resolves
+  static constexpr int kPoints = 64;          ///< along an axis
+  static constexpr double kSpacing_mm = 0.2;  ///< of points; smaller than what the beam resolves
 
   explicit SpeckleLattice(std::uint32_t seed);
 

@@ -10,13 +10,13 @@ namespace stylet {
 
 namespace {
 
-constexpr float kSideLobes = 0.018F;         // −35 dB of the mean amplitude at the same depth
-constexpr float kReverberation = 0.030F;     // −30 dB of what came from less deep, see kMemory_mm
+constexpr float kSideLobes = 0.018F;      // −35 dB of the mean amplitude at the same depth
+constexpr float kReverberation = 0.030F;  // −30 dB of what came from less deep, see kMemory_mm
 constexpr double kMemory_mm = 9.0;
-constexpr double kNoise_dB = -54.0;          // of the receiver near the probe
-constexpr double kNoise_dB_per_mm = 0.16;    // its growth by the gain with depth
-constexpr double kRing_mm = 0.62;            // distance of the rings near the transducer
-constexpr double kRings_mm = 1.0;            // depth over which they fall to 1/e
+constexpr double kNoise_dB = -54.0;        // of the receiver near the probe
+constexpr double kNoise_dB_per_mm = 0.16;  // its growth by the gain with depth
+constexpr double kRing_mm = 0.62;          // distance of the rings near the transducer
+constexpr double kRings_mm = 1.0;          // depth over which they fall to 1/e
 
 }  // namespace
 
@@ -62,8 +62,8 @@ void UltrasoundArtefacts::add(int sample, double depth_mm, float* real, float* i
   const auto noise = static_cast<float>(std::pow(10.0, (kNoise_dB + kNoise_dB_per_mm * depth_mm) / 20.0));
   const float* const pattern_real = &rows_[2 * static_cast<std::size_t>(sample) * static_cast<std::size_t>(lines_)];
   const float* const pattern_imaginary = pattern_real + lines_;
-  const auto ring = static_cast<float>(
-      18.0 * std::exp(-depth_mm / kRings_mm) * (0.55 + 0.45 * std::cos(2.0 * std::numbers::pi * depth_mm / kRing_mm)));
+  const auto ring = static_cast<float>(18.0 * std::exp(-depth_mm / kRings_mm) *
+                                       (0.55 + 0.45 * std::cos(2.0 * std::numbers::pi * depth_mm / kRing_mm)));
   for (int l = 0; l < lines_; ++l) {
     const int from = std::max(0, l - wide), to = std::min(lines_, l + wide + 1);
     const float mean = (amplitude_[static_cast<std::size_t>(to)] - amplitude_[static_cast<std::size_t>(from)]) /

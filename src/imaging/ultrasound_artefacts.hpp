@@ -24,9 +24,9 @@ class UltrasoundArtefacts {
 
  private:
   int lines_, samples_;
-  std::vector<float> pattern_;  ///< line by line
-  std::vector<float> rows_;     ///< the same, sample by sample: real parts of all lines, then imaginary parts
-  std::vector<float> memory_;   ///< (lines) amplitude that still reverberates
+  std::vector<float> pattern_;    ///< line by line
+  std::vector<float> rows_;       ///< the same, sample by sample: real parts of all lines, then imaginary parts
+  std::vector<float> memory_;     ///< (lines) amplitude that still reverberates
   std::vector<float> amplitude_;  ///< (lines + 1) sums of amplitudes from the first line on
 };
 

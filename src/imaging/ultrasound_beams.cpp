@@ -21,9 +21,7 @@ Eigen::Vector2d UltrasoundBeams::start_mm(double line) const {
   return surface_mm * direction(line);
 }
 
-double UltrasoundBeams::spacing_mm(double depth_mm) const {
-  return sector ? step * (surface_mm + depth_mm) : step;
-}
+double UltrasoundBeams::spacing_mm(double depth_mm) const { return sector ? step * (surface_mm + depth_mm) : step; }
 
 BeamPoint UltrasoundBeams::locate(const Eigen::Vector2d& in_plane) const {
   if (!sector) return {(in_plane.x() - first) / step, in_plane.y() - surface_mm, 0.0};

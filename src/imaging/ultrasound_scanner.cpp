@@ -36,7 +36,9 @@ float quick_log2(float x) {
   const auto bits = std::bit_cast<std::uint32_t>(x);
   const auto exponent = static_cast<float>(static_cast<int>(bits >> 23) - 127);
   const auto m = std::bit_cast<float>((bits & 0x007FFFFFU) | 0x3F800000U);  // 1 … 2
-  return exponent + (m - 1.0F) * (3.1157899F + m * (-3.3241990F + m * (2.5988452F + m * (-1.2315303F + m * (0.31821337F - 0.034436006F * m)))));
+  return exponent +
+         (m - 1.0F) * (3.1157899F +
+                       m * (-3.3241990F + m * (2.5988452F + m * (-1.2315303F + m * (0.31821337F - 0.034436006F * m)))));
 }
 
 }  // namespace
@@ -117,7 +119,8 @@ void UltrasoundScanner::Parts::fill(const Moment& moment) {
   std::fill(is_concretion.begin(), is_concretion.end(), std::uint8_t{0});
   slice.place(beams, moment.displacement);
   shift.compute(beams, moment, slice);
-  slice.cut(beams, [this](const BeamSpan& span) { fill(span); }, [](Index) { return true; });
+  slice.cut(
+      beams, [this](const BeamSpan& span) { fill(span); }, [](Index) { return true; });
 }
 
 /// Fills the samples of a span with speckle.
@@ -199,7 +202,8 @@ void UltrasoundScanner::Parts::note_border(const BeamSpan& span, const Vec3& x0,
       interface_echo(roles[static_cast<std::size_t>(here)], roles[static_cast<std::size_t>(there)]);
   const auto facing = static_cast<float>(std::abs(span.cosine));
   hits.push_back({span.line, static_cast<float>(span.to_mm),
-                  amplitude_of_dB(echo.level_dB) * std::pow(facing, echo.falloff), echo.roughness_mm, x0 + span.to_mm * dx});
+                  amplitude_of_dB(echo.level_dB) * std::pow(facing, echo.falloff), echo.roughness_mm,
+                  x0 + span.to_mm * dx});
 }
 
 /// Weakens the echoes by the tissue on their way, and strengthens them by the receiver's gain with depth.
@@ -245,8 +249,8 @@ void UltrasoundScanner::Parts::add_borders() {
     // Parts of a rough surface lie deeper, differently from line to line.
     for (int k = 1; k <= 6; ++k) {
       const std::complex<float> part = lattice.at(lattice.position((1.0 + 0.3 * k) * hit.at));
-      field.add(hit.line, sample + std::abs(rough) + 0.18 * k / beams.sample_mm, 0.5F * strength / static_cast<float>(k),
-                part.real(), part.imag());
+      field.add(hit.line, sample + std::abs(rough) + 0.18 * k / beams.sample_mm,
+                0.5F * strength / static_cast<float>(k), part.real(), part.imag());
     }
   }
 }
@@ -276,7 +280,8 @@ Result<UltrasoundScanner> UltrasoundScanner::create(const TetMesh& mesh, std::sp
                                                     const UltrasoundSettings& settings,
                                                     const UltrasoundFeatures& features) {
   if (echoes.size() != mesh.regions.size())
-    return input_error("ultrasound", fmt::format("{} echoes are given for {} regions", echoes.size(), mesh.regions.size()),
+    return input_error("ultrasound",
+                       fmt::format("{} echoes are given for {} regions", echoes.size(), mesh.regions.size()),
                        "Give one for each region of the mesh");
   if (settings.lines < 2 || settings.samples < 2)
     return input_error("ultrasound",
@@ -324,8 +329,8 @@ PolarPicture UltrasoundScanner::scan(const Moment& moment, const UltrasoundBeams
 }
 
 double UltrasoundScanner::level_dB(int line, int sample) const {
-  const auto at = static_cast<std::size_t>(sample) * static_cast<std::size_t>(parts_->beams.lines) +
-                  static_cast<std::size_t>(line);
+  const auto at =
+      static_cast<std::size_t>(sample) * static_cast<std::size_t>(parts_->beams.lines) + static_cast<std::size_t>(line);
   return 10.0 * std::log10(std::max(1e-20, static_cast<double>(parts_->power[at])));
 }
 

@@ -22,8 +22,7 @@ void VoxelGrid::fill(const TetMesh& mesh, std::size_t tet) {
   const Vec3 first = mesh.nodes[static_cast<std::size_t>(corners[0])];
   Eigen::AlignedBox3d box;
   for (const Index node : corners) box.extend(mesh.nodes[static_cast<std::size_t>(node)]);
-  const Eigen::Vector3i from =
-      ((box.min() - low_) / voxel_mm_).array().ceil().max(0.0).cast<int>();
+  const Eigen::Vector3i from = ((box.min() - low_) / voxel_mm_).array().ceil().max(0.0).cast<int>();
   const Eigen::Vector3i to =
       ((box.max() - low_) / voxel_mm_).array().floor().min((count_.array() - 1).cast<double>()).cast<int>();
   for (int k = from.z(); k <= to.z(); ++k) {

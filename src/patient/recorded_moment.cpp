@@ -89,8 +89,8 @@ std::vector<ShownForce> forces_of(const RunRecording& recording, const Locator& 
     for (std::size_t c = 0; c < forces.size(); ++c) {
       const auto at = locator.find(forces[c].at_mm);
       if (!at) continue;
-      const Vec3 u = displacement_of(recording.mesh, displacement, *at) +
-                     field.beside_mesh(at->tet, at->weights, forces[c].at_mm);
+      const Vec3 u =
+          displacement_of(recording.mesh, displacement, *at) + field.beside_mesh(at->tet, at->weights, forces[c].at_mm);
       forces[c].at_mm = 0.5 * (forces[c].at_mm + now[c] - u);
     }
   }
@@ -100,9 +100,8 @@ std::vector<ShownForce> forces_of(const RunRecording& recording, const Locator& 
 /// The track of the needle beyond its tip, after it has been drawn back from the deepest frame until then.
 void add_track(const RunRecording& recording, const Locator& locator, Moment& moment) {
   const auto& frames = recording.frames;
-  const auto deepest = std::max_element(frames.begin(), frames.end(), [](const Frame& a, const Frame& b) {
-    return a.base_depth_mm < b.base_depth_mm;
-  });
+  const auto deepest = std::max_element(
+      frames.begin(), frames.end(), [](const Frame& a, const Frame& b) { return a.base_depth_mm < b.base_depth_mm; });
   if (deepest == frames.end() || deepest->time_s >= moment.time_s || deepest->needle.size() < 2) return;
   const Eigen::Matrix3Xf then = columns(*deepest).cast<float>();
   ShownTrack track{{}, recording.info.needle_diameter_mm};

@@ -18,8 +18,9 @@ namespace stylet::test {
 inline constexpr double kLevel = UltrasoundScanner::kCompensated_dB_per_cm_MHz;
 
 /// A block of 80 × 100 × 60 mm that is looked at along +y from y = 0.
-inline TetMesh imaged_block(std::vector<std::string> regions = {"body"},
-                            const std::function<int(const Vec3&)>& region_at = [](const Vec3&) { return 0; }) {
+inline TetMesh imaged_block(
+    std::vector<std::string> regions = {"body"},
+    const std::function<int(const Vec3&)>& region_at = [](const Vec3&) { return 0; }) {
   TetMesh mesh = box_mesh({-40, 0, -30}, {40, 100, 30}, {8, 20, 6});
   assign_regions(mesh, std::move(regions), region_at);
   return mesh;

@@ -30,8 +30,7 @@ Eigen::Vector2d widths(const UltrasoundBeams& beams, const UltrasoundSettings& s
     for (const int side : {-1, 1}) {
       double before = peak;
       for (int k = 1; k < 40; ++k) {
-        const double level =
-            scanner.level_dB(peak_line + side * k * line_step, peak_sample + side * k * sample_step);
+        const double level = scanner.level_dB(peak_line + side * k * line_step, peak_sample + side * k * sample_step);
         if (level < peak - 6.0206) {
           width += k - 1 + (before - (peak - 6.0206)) / (before - level);
           break;
@@ -105,13 +104,12 @@ TEST(Bone, casts_a_shadow_of_30_dB_or_more_also_with_artefacts) {
 }
 
 TEST(Fluid, is_dark_and_what_lies_behind_it_is_brighter) {
-  const TetMesh mesh = imaged_block({"body", "bladder"}, [](const Vec3& x) {
-    return x.y() > 20 && x.y() < 40 && x.x() > 0 ? 1 : 0;
-  });
+  const TetMesh mesh =
+      imaged_block({"body", "bladder"}, [](const Vec3& x) { return x.y() > 20 && x.y() < 40 && x.x() > 0 ? 1 : 0; });
   const UltrasoundSettings settings;
   const UltrasoundBeams beams = block_beams(settings);
-  auto scanner = UltrasoundScanner::create(
-      mesh, std::vector<TissueEcho>{default_echo("body"), default_echo("bladder")}, settings);
+  auto scanner =
+      UltrasoundScanner::create(mesh, std::vector<TissueEcho>{default_echo("body"), default_echo("bladder")}, settings);
   ASSERT_TRUE(scanner.ok());
   scanner->scan(moment_at_rest(mesh), beams);
   const double tissue = mean_dB(*scanner, 30, 100, 25, 38, beams.sample_mm);
@@ -123,7 +121,8 @@ TEST(Fluid, is_dark_and_what_lies_behind_it_is_brighter) {
 }
 
 TEST(Border, is_bright_where_the_beam_meets_it_at_a_right_angle_and_fades_with_the_angle) {
-  const TetMesh mesh = imaged_block({"periprostatic_fat", "prostate"}, [](const Vec3& x) { return x.y() > 40 ? 1 : 0; });
+  const TetMesh mesh =
+      imaged_block({"periprostatic_fat", "prostate"}, [](const Vec3& x) { return x.y() > 40 ? 1 : 0; });
   const UltrasoundSettings settings;
   const std::vector<TissueEcho> echoes{{-100.0, kLevel}, {-100.0, kLevel}};
   const auto level = [&](double degrees) {

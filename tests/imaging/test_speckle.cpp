@@ -16,8 +16,7 @@ using test::plain_scanner;
 std::vector<double> amplitudes(const UltrasoundScanner& scanner, int line_step, int sample_step) {
   std::vector<double> values;
   for (int line = 20; line < 236; line += line_step)
-    for (int s = 60; s < 520; s += sample_step)
-      values.push_back(std::pow(10.0, scanner.level_dB(line, s) / 20.0));
+    for (int s = 60; s < 520; s += sample_step) values.push_back(std::pow(10.0, scanner.level_dB(line, s) / 20.0));
   return values;
 }
 

@@ -22,9 +22,9 @@ TEST(UltrasoundPicture, shows_twenty_points_of_deformed_tissue_where_the_mesh_ha
   Moment moment = moment_at_rest(mesh);
   for (Index node = 0; node < mesh.node_count(); ++node) {
     const Vec3& x = mesh.nodes[static_cast<std::size_t>(node)];
-    moment.displacement.col(node) =
-        Eigen::Vector3f(static_cast<float>(2.0 * std::sin(x.y() / 15.0)), static_cast<float>(3.0 * std::cos(x.x() / 20.0)),
-                        static_cast<float>(1.5 * std::sin(x.x() / 12.0)));
+    moment.displacement.col(node) = Eigen::Vector3f(static_cast<float>(2.0 * std::sin(x.y() / 15.0)),
+                                                    static_cast<float>(3.0 * std::cos(x.x() / 20.0)),
+                                                    static_cast<float>(1.5 * std::sin(x.x() / 12.0)));
   }
   for (const bool sector : {false, true}) {
     const UltrasoundBeams beams = block_beams(settings, sector);
@@ -93,8 +93,8 @@ TEST(UltrasoundAnatomy, has_a_transition_zone_that_is_darker_than_the_peripheral
   // A gland of one region: the zone is assumed.
   const TetMesh mesh = imaged_block({"periprostatic_fat", "prostate"},
                                     [](const Vec3& x) { return (x - Vec3(0, 35, 0)).norm() < 22 ? 1 : 0; });
-  auto scanner = UltrasoundScanner::create(
-      mesh, std::vector<TissueEcho>{{2.0, kLevel}, {0.0, kLevel}}, {}, {.anatomy = true, .artefacts = false});
+  auto scanner = UltrasoundScanner::create(mesh, std::vector<TissueEcho>{{2.0, kLevel}, {0.0, kLevel}}, {},
+                                           {.anatomy = true, .artefacts = false});
   ASSERT_TRUE(scanner.ok());
   UltrasoundBeams beams = block_beams({});
   // Posterior is +y: look from behind, as the probe does.

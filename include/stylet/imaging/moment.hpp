@@ -30,12 +30,12 @@ struct ShownTrack {
 /// A force of a needle on the tissue. With these forces a picture shows the tissue's displacement right beside the
 /// needle, which the linear elements of the mesh cannot represent (docs/theory/near_field.md).
 struct ShownForce {
-  Vec3 at_mm = Vec3::Zero();     ///< LPS, undeformed place of the force
-  Vec3 force_N = Vec3::Zero();   ///< LPS, on the tissue
-  Vec3 along = Vec3::UnitZ();    ///< unit vector of the piece of shaft
-  double length_mm = 4.0;        ///< of the piece of shaft that bears the force
-  double epsilon_mm = 1.05;      ///< radius over which the force is spread
-  double shear_MPa = 0.0;        ///< shear modulus of the tissue there
+  Vec3 at_mm = Vec3::Zero();    ///< LPS, undeformed place of the force
+  Vec3 force_N = Vec3::Zero();  ///< LPS, on the tissue
+  Vec3 along = Vec3::UnitZ();   ///< unit vector of the piece of shaft
+  double length_mm = 4.0;       ///< of the piece of shaft that bears the force
+  double epsilon_mm = 1.05;     ///< radius over which the force is spread
+  double shear_MPa = 0.0;       ///< shear modulus of the tissue there
   double poisson = 0.49;
 };
 

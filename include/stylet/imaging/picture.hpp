@@ -12,11 +12,11 @@ namespace stylet {
 struct Picture {
   int columns = 0;
   int rows = 0;
-  std::vector<std::uint8_t> pixels;         ///< (rows × columns) row by row from the top; 0 is black
-  double mm_per_pixel = 0.0;                ///< of both sides
-  Vec3 corner_mm = Vec3::Zero();            ///< LPS, centre of the first pixel, top left
-  Vec3 right = Vec3::UnitX();               ///< unit vector in LPS along a row
-  Vec3 down = Vec3::UnitY();                ///< unit vector in LPS along a column
+  std::vector<std::uint8_t> pixels;  ///< (rows × columns) row by row from the top; 0 is black
+  double mm_per_pixel = 0.0;         ///< of both sides
+  Vec3 corner_mm = Vec3::Zero();     ///< LPS, centre of the first pixel, top left
+  Vec3 right = Vec3::UnitX();        ///< unit vector in LPS along a row
+  Vec3 down = Vec3::UnitY();         ///< unit vector in LPS along a column
 
   [[nodiscard]] std::uint8_t at(int row, int column) const {
     return pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column)];

@@ -48,7 +48,8 @@ struct UltrasoundBeams {
 
 /// The lines of an array of the probe.
 /// - biplane, transverse: a sector in the plane across the axis, the patient's left on the viewer's right without roll
-/// - biplane, sagittal: parallel lines in the plane of the axis and the roll's direction, superior on the viewer's left,
+/// - biplane, sagittal: parallel lines in the plane of the axis and the roll's direction, superior on the viewer's
+/// left,
 ///   with the middle of the array at the place's origin
 /// - endfire: a sector about the axis, from the origin as its centre; the array sagittal lies in the plane of axis and
 ///   roll's direction (ahead is up, anterior on the viewer's right), transverse across it

@@ -30,9 +30,9 @@ struct BeamProfile {
   double focal_elevation_mm = 5.0;
 
   static constexpr double kSpeed_mm_per_us = 1.54;
-  static constexpr double kF = 2.5;              ///< focal length over aperture
-  static constexpr double kAxial_mm = 0.30;      ///< full width at half maximum of a point's echo along the line
-  static constexpr double kFocalRange_mm = 20.0; ///< from the focus to where the beam is √2 times as wide
+  static constexpr double kF = 2.5;               ///< focal length over aperture
+  static constexpr double kAxial_mm = 0.30;       ///< full width at half maximum of a point's echo along the line
+  static constexpr double kFocalRange_mm = 20.0;  ///< from the focus to where the beam is √2 times as wide
 
   [[nodiscard]] double wavelength_mm() const { return kSpeed_mm_per_us / frequency_MHz; }
   /// Full width at half maximum of a point's echo across the lines, in the plane [mm]: λF √(1 + ((z − focus)/range)²).

@@ -17,9 +17,9 @@ struct ImageRow {
   Index nodes = 0;
   int lines = 0;
   int samples = 0;
-  StepTimes cpu_ms;      ///< thread CPU time of a whole picture: needle with its near field, 20 seeds, artefacts
-  StepTimes lattice_ms;  ///< of the same picture with speckle alone: cut, lattice, beam, envelope, compression
-  double set_up_s = 0.0; ///< thread CPU time of the scanner's construction
+  StepTimes cpu_ms;       ///< thread CPU time of a whole picture: needle with its near field, 20 seeds, artefacts
+  StepTimes lattice_ms;   ///< of the same picture with speckle alone: cut, lattice, beam, envelope, compression
+  double set_up_s = 0.0;  ///< thread CPU time of the scanner's construction
 };
 
 struct ImageBenchOptions {

@@ -33,5 +33,6 @@ std::vector<RowSpec> in_patients_rows();
 std::vector<RowSpec> dose_rows();
 std::vector<RowSpec> implant_rows();
 std::vector<RowSpec> implant_dose_rows();
+std::vector<RowSpec> ultrasound_rows();
 
 }  // namespace stylet::validate

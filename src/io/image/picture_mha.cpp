@@ -3,9 +3,9 @@
 #include "detail/whole_file.hpp"
 #include "stylet/io/picture_io.hpp"
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 #include <vtkmetaio/metaImage.h>
+#include <Eigen/Geometry>
 
 #include <array>
 

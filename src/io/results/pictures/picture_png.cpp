@@ -18,10 +18,10 @@ namespace stylet {
 
 namespace {
 
-constexpr int kScaleWidth = 52;   // pixels beside the picture for the scale
-constexpr int kTextHeight = 26;   // pixels above and below it for a line of text
+constexpr int kScaleWidth = 52;  // pixels beside the picture for the scale
+constexpr int kTextHeight = 26;  // pixels above and below it for a line of text
 constexpr int kMargin = 8;
-constexpr int kLetters = 13;      // size of letters in points at 72 dots per inch
+constexpr int kLetters = 13;  // size of letters in points at 72 dots per inch
 constexpr unsigned char kInk = 200;
 
 /// A grey canvas whose rows are counted from the top.
@@ -55,8 +55,8 @@ class Sheet {
     if (renderer == nullptr || !renderer->RenderString(letters, words, drawn, size, 72)) return;
     for (int j = 0; j < size[1]; ++j) {
       for (int i = 0; i < size[0]; ++i) {
-        const auto* const rgba = static_cast<const unsigned char*>(drawn->GetScalarPointer(
-            drawn->GetExtent()[0] + i, drawn->GetExtent()[2] + j, 0));
+        const auto* const rgba = static_cast<const unsigned char*>(
+            drawn->GetScalarPointer(drawn->GetExtent()[0] + i, drawn->GetExtent()[2] + j, 0));
         if (rgba[3] > 0) set(column + i, row + size[1] / 2 - j, static_cast<unsigned char>(rgba[3] * kInk / 255));
       }
     }
