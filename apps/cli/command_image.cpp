@@ -88,8 +88,8 @@ PictureMarks marks_of(const MadePicture& made, const ImageArguments& arguments, 
   };
   marks.surface_row = place(made.beams.point_mm(0.5 * (made.beams.lines - 1), 0.0))[1];
   marks.title = array == UltrasoundArray::transverse
-                    ? fmt::format("transverse, z = {:.1f} mm; R left, L right, anterior up", made.z_mm)
-                    : fmt::format("sagittal, z = {:.1f} mm; superior left, anterior up", made.z_mm);
+                    ? fmt::format("transverse, z = {:.1f} mm; anterior up, patient's left at the right", made.z_mm)
+                    : fmt::format("sagittal, z = {:.1f} mm; anterior up, superior at the left", made.z_mm);
   marks.notice = kNotice;
   if (!arguments.grid) return marks;
   const TemplateGrid& grid = patient.scenario.grid;
