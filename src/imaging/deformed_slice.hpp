@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <vector>
 
@@ -34,6 +35,7 @@ class DeformedSlice {
       : mesh_(&mesh),
         topology_(mesh),
         places_(3, mesh.node_count()),
+        above_(static_cast<std::size_t>(mesh.node_count())),
         starts_(static_cast<std::size_t>(lines)),
         ways_(static_cast<std::size_t>(lines)) {}
 
@@ -51,7 +53,7 @@ class DeformedSlice {
     for (std::size_t t = 0; t < mesh_->tets.size(); ++t) {
       const auto& corners = mesh_->tets[t];
       int above = 0;
-      for (const Index node : corners) above += places_(2, node) > 0.0 ? 1 : 0;
+      for (const Index node : corners) above += above_[static_cast<std::size_t>(node)];
       if (above == 0 || above == 4 || !wanted(static_cast<Index>(t))) continue;
       one(beams, static_cast<Index>(t), take);
     }
@@ -121,6 +123,7 @@ class DeformedSlice {
   const TetMesh* mesh_;
   Topology topology_;
   Eigen::Matrix3Xd places_;
+  std::vector<std::uint8_t> above_;  ///< (nodes) 1 in front of the plane; small, since it is read for every tetrahedron
   std::vector<Eigen::Vector2d> starts_, ways_;  ///< (lines)
 };
 

@@ -132,7 +132,7 @@ class EchoPainter {
 
 /// Softens borders by the weights 1, 2, 1 along each axis. The thin layers of the rectal wall stay as they are.
 void soften(std::vector<float>& levels, const VoxelGrid& grid, const std::vector<TissueRole>& roles) {
-  const Eigen::Vector3i n = grid.count();
+  const Eigen::Vector3i& n = grid.count();
   const std::array<std::ptrdiff_t, 3> strides{1, n.x(), static_cast<std::ptrdiff_t>(n.x()) * n.y()};
   std::vector<float> before;
   for (int axis = 0; axis < 3; ++axis) {

@@ -88,7 +88,7 @@ void RodEchoes::add(std::span<const Vec3> centreline_mm, double diameter_mm, con
   const float strength = amplitude_of(look.level_dB) / spread.axial()[0];
   const float rough = amplitude_of(look.rough_dB);
   for (std::size_t k = 0; k + 1 < centreline_mm.size(); ++k) {
-    const Vec3 from = centreline_mm[k];
+    const Vec3& from = centreline_mm[k];
     const Vec3 way = centreline_mm[k + 1] - from;
     const double length = way.norm();
     if (!(length > 0.0)) continue;

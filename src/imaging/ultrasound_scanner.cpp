@@ -213,7 +213,7 @@ void UltrasoundScanner::Parts::attenuate() {
     return amplitude_of_dB(-(dB_per_cm_MHz - UltrasoundScanner::kCompensated_dB_per_cm_MHz) * profile.frequency_MHz *
                            way_cm);
   };
-  std::array<float, 256> factors;
+  std::array<float, 256> factors{};
   for (std::size_t r = 0; r < echoes.size(); ++r)
     factors[std::min<std::size_t>(r, 255)] = factor_of(echoes[r].attenuation_dB_per_cm_MHz);
   const float concretion = factor_of(kConcretion_dB_per_cm_MHz);
@@ -269,9 +269,9 @@ void UltrasoundScanner::Parts::compress() {
     if (features.artefacts) artefacts.add(s, s * beams.sample_mm, real, imaginary, row);
     for (std::size_t l = 0; l < n; ++l) {
       const float dB = kLogUnit_dB * quick_log2(std::max(row[l], 1e-20F));
-      const float value = std::clamp(scale * (dB + offset), 0.0F, 255.0F);
+      const float rounded = std::clamp(scale * (dB + offset) + 0.5F, 0.0F, 255.0F);
       grey[l * static_cast<std::size_t>(beams.samples) + static_cast<std::size_t>(s)] =
-          static_cast<std::uint8_t>(value + 0.5F);
+          static_cast<std::uint8_t>(rounded);
     }
   }
 }
