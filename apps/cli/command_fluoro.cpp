@@ -39,7 +39,7 @@ Result<> check_fluoro_output(const FluoroArguments& arguments) {
 
 /// A picture and the processor time that the exposures took.
 struct Exposed {
-  Picture picture;
+  GreyPicture picture;
   double cpu_ms = 0.0;
 };
 
@@ -99,7 +99,7 @@ Result<> run_fluoro(const FluoroArguments& arguments, Console& console) {
   if (path.has_parent_path()) {
     if (auto made = make_folder(path.parent_path()); !made) return made;
   }
-  const Picture& picture = result->picture;
+  const GreyPicture& picture = result->picture;
   const Result<> written = path.extension() == ".png"
                                ? write_picture_png(picture, marks_of(settings, arguments.second_keV), path)
                                : write_picture_mha(std::span(&picture, 1), picture.mm_per_pixel, path);
@@ -137,7 +137,7 @@ Command add_fluoro_command(CLI::App& program) {
       ->type_name("SCENARIO.toml|run.h5")
       ->required();
   app->add_option("-o,--output", arguments->output,
-                  "Picture: .png with a scale, or .mha with grey values and their place in the patient")
+                  "GreyPicture: .png with a scale, or .mha with grey values and their place in the patient")
       ->type_name("FILE");
   app->add_option("--time", arguments->time_s, "Moment of the recording [s] (default: when the needle is deepest)")
       ->type_name("S");

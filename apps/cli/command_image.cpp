@@ -35,7 +35,7 @@ struct ImageArguments {
 
 /// A picture that has been made, and where.
 struct MadePicture {
-  Picture picture;
+  GreyPicture picture;
   UltrasoundBeams beams;
   double z_mm = 0.0;
   double cpu_ms = 0.0;
@@ -79,15 +79,15 @@ std::vector<double> planes_through(const ImagedPatient& patient, double step_mm)
 PictureMarks marks_of(const MadePicture& made, const ImageArguments& arguments, const ImagedPatient& patient,
                       UltrasoundArray array) {
   PictureMarks marks;
-  const Picture& picture = made.picture;
+  const GreyPicture& picture = made.picture;
   const auto place = [&](const Vec3& x) {
     const Vec3 from = (x - picture.corner_mm) / picture.mm_per_pixel;
     return std::array<double, 2>{from.dot(picture.right), from.dot(picture.down)};
   };
   marks.surface_row = place(made.beams.point_mm(0.5 * (made.beams.lines - 1), 0.0))[1];
   marks.title = array == UltrasoundArray::transverse
-                    ? fmt::format("transverse, z = {:.1f} mm; R left, L right, anterior up", made.z_mm)
-                    : fmt::format("sagittal, z = {:.1f} mm; superior left, anterior up", made.z_mm);
+                    ? fmt::format("transverse, z = {:.1f} mm; anterior up, patient's left at the right", made.z_mm)
+                    : fmt::format("sagittal, z = {:.1f} mm; anterior up, superior at the left", made.z_mm);
   marks.notice = kPictureNotice;
   if (!arguments.grid) return marks;
   const TemplateGrid& grid = patient.scenario.grid;
@@ -187,7 +187,7 @@ Result<> run_image(const ImageArguments& arguments, Console& console) {
                         {"cpu_ms", one.cpu_ms}});
   }
   if (volume) {
-    std::vector<Picture> planes;
+    std::vector<GreyPicture> planes;
     for (const MadePicture& one : *made) planes.push_back(one.picture);
     const double thickness =
         arguments.all ? patient->scenario.probe.step_mm : patient->scenario.ultrasound.elevation_mm;
@@ -220,9 +220,10 @@ Command add_image_command(CLI::App& program) {
                   "Scenario (TOML): the patient at rest, without a needle; or the run.h5 of a run")
       ->type_name("SCENARIO.toml|run.h5")
       ->required();
-  app->add_option("-o,--output", arguments->output,
-                  "Picture: .png with a scale, or .mha with its place in the patient; with --all several .png or one "
-                  "volume")
+  app->add_option(
+         "-o,--output", arguments->output,
+         "GreyPicture: .png with a scale, or .mha with its place in the patient; with --all several .png or one "
+         "volume")
       ->type_name("FILE")
       ->required();
   app->add_option("--array", arguments->array, "Array of the probe (default: ultrasound.array of the scenario)")

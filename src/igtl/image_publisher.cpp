@@ -26,7 +26,7 @@ struct ImagePublisher::Parts {
   std::thread thread;
 
   void run() {
-    stylet::Picture image;
+    GreyPicture image;
     auto due = std::chrono::steady_clock::now();
     std::unique_lock lock(mutex);
     while (!end) {

@@ -91,7 +91,7 @@ Result<> Link::publish_surface(Surface surface) {
   return Ok{};
 }
 
-Result<> Link::publish_image(stylet::Picture image) {
+Result<> Link::publish_image(GreyPicture image) {
   constexpr std::size_t most = std::size_t{1} << 26;
   constexpr int longest = 65535;
   const bool sized = image.columns > 0 && image.rows > 0 && image.columns <= longest && image.rows <= longest;

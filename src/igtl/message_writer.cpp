@@ -130,7 +130,7 @@ void add_surface(Bytes& out, const std::string& name, const Surface& surface) {
   finish(out, body, "POLYDATA", name);
 }
 
-void add_image(Bytes& out, const std::string& name, const stylet::Picture& image) {
+void add_image(Bytes& out, const std::string& name, const GreyPicture& image) {
   igtl_image_header header{};
   header.version = IGTL_IMAGE_HEADER_VERSION;
   header.num_components = 1;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "stylet/igtl/picture.hpp"
-#include "stylet/imaging/picture.hpp"
+#include "stylet/imaging/grey_picture.hpp"
 
 #include <cstdint>
 #include <span>
@@ -31,7 +31,7 @@ void add_points(Bytes& out, const std::string& name, std::span<const Triple> lps
 void add_surface(Bytes& out, const std::string& name, const Surface& surface);
 /// IMAGE of 8-bit grey values, one slice; its matrix has the centre of the image as its origin.
 /// @param image its size must fit its values
-void add_image(Bytes& out, const std::string& name, const stylet::Picture& image);
+void add_image(Bytes& out, const std::string& name, const GreyPicture& image);
 void add_status(Bytes& out, const std::string& name, StatusCode code, const std::string& text);
 
 }  // namespace stylet::igtl

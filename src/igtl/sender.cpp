@@ -42,7 +42,7 @@ void Sender::publish(Surface surface) {
   surface_ = std::move(surface);
 }
 
-void Sender::publish(stylet::Picture image) {
+void Sender::publish(GreyPicture image) {
   const std::scoped_lock lock(mutex_);
   image_ = std::move(image);
 }
@@ -102,7 +102,7 @@ void Sender::send_surface(Clock::time_point now) {
 
 void Sender::send_image(Clock::time_point now) {
   if (now < image_due_) return;
-  std::optional<stylet::Picture> image;
+  std::optional<GreyPicture> image;
   {
     const std::scoped_lock lock(mutex_);
     image.swap(image_);

@@ -25,7 +25,7 @@ class Sender {
   /// May be called from any thread.
   void publish(Surface surface);
   /// May be called from any thread.
-  void publish(stylet::Picture image);
+  void publish(GreyPicture image);
 
  private:
   using Clock = Connection::Clock;
@@ -47,7 +47,7 @@ class Sender {
   Clock::time_point heartbeat_due_;
   std::mutex mutex_;
   std::optional<Surface> surface_;    ///< guarded by the mutex: the newest surface that has not been sent
-  std::optional<stylet::Picture> image_;  ///< guarded by the mutex: the newest image that has not been sent
+  std::optional<GreyPicture> image_;  ///< guarded by the mutex: the newest image that has not been sent
 };
 
 }  // namespace stylet::igtl

@@ -12,6 +12,11 @@ void DeformedSlice::place(const UltrasoundBeams& beams, const Eigen::Matrix3Xf& 
   for (Index node = 0; node < mesh_->node_count(); ++node) {
     const Vec3 x = mesh_->nodes[static_cast<std::size_t>(node)] + displacement.col(node).cast<double>();
     places_.col(node) = to_plane * x - origin;
+    above_[static_cast<std::size_t>(node)] = places_(2, node) > 0.0 ? 1 : 0;
+  }
+  for (std::size_t line = 0; line < starts_.size(); ++line) {
+    starts_[line] = beams.start_mm(static_cast<double>(line));
+    ways_[line] = beams.direction(static_cast<double>(line));
   }
 }
 

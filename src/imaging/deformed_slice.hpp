@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <vector>
 
@@ -30,28 +31,38 @@ struct BeamSpan {
 /// Cuts the deformed mesh by the plane of an ultrasound picture, line by line. Does not allocate after construction.
 class DeformedSlice {
  public:
-  explicit DeformedSlice(const TetMesh& mesh) : mesh_(&mesh), topology_(mesh), places_(3, mesh.node_count()) {}
+  DeformedSlice(const TetMesh& mesh, int lines)
+      : mesh_(&mesh),
+        topology_(mesh),
+        places_(3, mesh.node_count()),
+        above_(static_cast<std::size_t>(mesh.node_count())),
+        starts_(static_cast<std::size_t>(lines)),
+        ways_(static_cast<std::size_t>(lines)) {}
 
   [[nodiscard]] const TetMesh& mesh() const { return *mesh_; }
 
-  /// Calls take(const BeamSpan&) for each tetrahedron on each line, tetrahedron by tetrahedron.
+  /// Moves the nodes and takes over the lines of a picture.
   /// @param displacement (3 × nodes) [mm] LPS
-  template <class Take>
-  void cut(const UltrasoundBeams& beams, const Eigen::Matrix3Xf& displacement, Take&& take) {
-    place(beams, displacement);
+  void place(const UltrasoundBeams& beams, const Eigen::Matrix3Xf& displacement);
+
+  /// Calls take(const BeamSpan&) for each tetrahedron on each line, tetrahedron by tetrahedron.
+  /// @param beams those of place()
+  /// @param wanted (Index tet) → bool: whether a tetrahedron is looked at
+  template <class Take, class Wanted>
+  void cut(const UltrasoundBeams& beams, Take&& take, Wanted&& wanted) const {
     for (std::size_t t = 0; t < mesh_->tets.size(); ++t) {
       const auto& corners = mesh_->tets[t];
       int above = 0;
-      for (const Index node : corners) above += places_(2, node) > 0.0 ? 1 : 0;
-      if (above == 0 || above == 4) continue;
+      for (const Index node : corners) above += above_[static_cast<std::size_t>(node)];
+      if (above == 0 || above == 4 || !wanted(static_cast<Index>(t))) continue;
       one(beams, static_cast<Index>(t), take);
     }
   }
 
-  /// Weights of the corners of a tetrahedron at a place in the plane of the last cut (across, ahead) [mm].
+  /// Weights of the corners of a tetrahedron at a place in the plane of the last place() (across, ahead) [mm].
   [[nodiscard]] Vec4 weights(Index tet, const Eigen::Vector2d& in_plane) const;
-  /// Derivative of the undeformed place by the deformed one in a tetrahedron of the last cut (3 × 3, LPS).
-  /// @param beams of the last cut
+  /// Derivative of the undeformed place by the deformed one in a tetrahedron of the last place() (3 × 3, LPS).
+  /// @param beams those of place()
   [[nodiscard]] Mat3 undeformed_by_deformed(const UltrasoundBeams& beams, Index tet) const;
 
  private:
@@ -59,7 +70,6 @@ class DeformedSlice {
     int first = 0, last = -1;
   };
 
-  void place(const UltrasoundBeams& beams, const Eigen::Matrix3Xf& displacement);
   [[nodiscard]] Lines lines_of(const UltrasoundBeams& beams, const std::array<Index, 4>& corners) const;
 
   template <class Take>
@@ -79,8 +89,8 @@ class DeformedSlice {
     span.tet = tet;
     const double depth = beams.sample_mm * (beams.samples - 1);
     for (int line = lines.first; line <= lines.last; ++line) {
-      const Eigen::Vector2d start = beams.start_mm(line);
-      const Eigen::Vector2d way = beams.direction(line);
+      const Eigen::Vector2d& start = starts_[static_cast<std::size_t>(line)];
+      const Eigen::Vector2d& way = ways_[static_cast<std::size_t>(line)];
       span.weights = gradients * (Vec3(start.x(), start.y(), 0.0) - p0);
       span.weights[0] += 1.0;
       span.slopes = gradients.leftCols<2>() * way;
@@ -113,6 +123,8 @@ class DeformedSlice {
   const TetMesh* mesh_;
   Topology topology_;
   Eigen::Matrix3Xd places_;
+  std::vector<std::uint8_t> above_;  ///< (nodes) 1 in front of the plane; small, since it is read for every tetrahedron
+  std::vector<Eigen::Vector2d> starts_, ways_;  ///< (lines)
 };
 
 }  // namespace stylet

@@ -74,20 +74,20 @@ class EchoPainter {
     const Vec3 from(q.x() / 0.66, (q.y() + 0.20) / 0.60, (q.z() - 0.06) / 0.74);
     const double f = from.norm() + 0.10 * coarse_(spot.x / 8.0) + 0.05 * fine_(spot.x / 3.5);
     const double inner = 1.0 - ramp(f, 0.94, 1.04);  // share of the transition zone
-    const double nodules = 3.2 * coarse_(spot.x / 5.0 + Vec3::Constant(7.3)) - 1.0;
+    const double nodules = 3.2 * coarse_(spot.x / 5.0 + Vec3::Constant(7.3)) - 2.0;
     level += inner * (transition_dB_ + nodules);
     // Its border is a thin line of compressed tissue, clearest at the back.
     const double back = ramp(q.y(), -0.35, 0.1);
     level += 8.0 * (0.3 + 0.7 * back) * bump(f, 1.0, 0.075);
     // Concretions lie along the border in clusters.
-    const double cluster = ramp(coarse_(spot.x / 6.0 + Vec3::Constant(3.1)), 0.35, 0.8);
+    const double cluster = ramp(coarse_(spot.x / 6.0 + Vec3::Constant(3.1)), 0.2, 0.6);
     if (back > 0.0 && std::abs(f - 1.0) < 0.07 && spot.inside_mm > 2.5)
-      level += 26.0 * back * cluster * ramp(third_(spot.x / 1.9 + Vec3::Constant(1.7)), 0.55, 1.05);
+      level += 48.0 * back * cluster * ramp(third_(spot.x / 1.9 + Vec3::Constant(1.7)), 0.5, 1.0);
     // At the verumontanum, behind the urethra at the middle level, concretions are common.
     const double veru = (spot.urethra_mm < 2.0 && std::abs(q.x()) < 0.07 && std::abs(q.z() + 0.05) < 0.07)
                             ? ramp(spot.x.y() - gland_.box.center().y(), -0.12, 0.6)
                             : 0.0;
-    level += 20.0 * veru * ramp(third_(spot.x / 1.6), 0.0, 0.8);
+    level += 40.0 * veru * ramp(third_(spot.x / 1.6), 0.0, 0.8);
     // The fibromuscular stroma in front is dark, ducts of the peripheral zone are streaks towards the urethra.
     level -= 6.0 * ramp(-q.y(), 0.55, 0.85) * (1.0 - ramp(std::abs(q.x()), 0.25, 0.5));
     const double angle = std::atan2(q.x(), q.y() + 0.3);
@@ -132,7 +132,7 @@ class EchoPainter {
 
 /// Softens borders by the weights 1, 2, 1 along each axis. The thin layers of the rectal wall stay as they are.
 void soften(std::vector<float>& levels, const VoxelGrid& grid, const std::vector<TissueRole>& roles) {
-  const Eigen::Vector3i n = grid.count();
+  const Eigen::Vector3i& n = grid.count();
   const std::array<std::ptrdiff_t, 3> strides{1, n.x(), static_cast<std::ptrdiff_t>(n.x()) * n.y()};
   std::vector<float> before;
   for (int axis = 0; axis < 3; ++axis) {

@@ -48,8 +48,8 @@ Result<> check_distances(const TetMesh& mesh, const FluoroscopySettings& setting
 }
 
 /// The empty picture of an X-ray unit, in the plane through its centre.
-Picture picture_of_unit(const XrayGeometry& unit) {
-  Picture picture;
+GreyPicture picture_of_unit(const XrayGeometry& unit) {
+  GreyPicture picture;
   picture.columns = picture.rows = unit.pixels;
   picture.mm_per_pixel = unit.pixel_mm;
   picture.right = unit.right;
@@ -94,7 +94,7 @@ struct Fluoroscope::Parts {
   XrayDetector detector;
   double steel_per_mm;
   SeedAttenuation seed;
-  Picture picture;
+  GreyPicture picture;
   std::vector<float> transmission;  ///< sums of μ · length while a picture is made
 };
 
@@ -107,7 +107,7 @@ Result<std::unique_ptr<Fluoroscope>> Fluoroscope::create(const TetMesh& mesh, co
   return std::unique_ptr<Fluoroscope>(new Fluoroscope(std::make_unique<Parts>(mesh, settings, unit)));
 }
 
-const Picture& Fluoroscope::expose(const Moment& moment) {
+const GreyPicture& Fluoroscope::expose(const Moment& moment) {
   Parts& p = *parts_;
   std::fill(p.transmission.begin(), p.transmission.end(), 0.0F);
   p.surfaces.add(p.unit, moment.displacement, p.transmission);
@@ -123,13 +123,13 @@ const Picture& Fluoroscope::expose(const Moment& moment) {
   return p.picture;
 }
 
-const Picture& Fluoroscope::picture() const { return parts_->picture; }
+const GreyPicture& Fluoroscope::picture() const { return parts_->picture; }
 std::span<const float> Fluoroscope::transmission() const { return parts_->transmission; }
 std::span<const float> Fluoroscope::optical_depth() const { return parts_->detector.optical_depth(); }
 const XrayGeometry& Fluoroscope::geometry() const { return parts_->unit; }
 const FluoroscopySettings& Fluoroscope::settings() const { return parts_->settings; }
 
-Result<Picture> without_soft_tissue(const Fluoroscope& low, const Fluoroscope& high) {
+Result<GreyPicture> without_soft_tissue(const Fluoroscope& low, const Fluoroscope& high) {
   FluoroscopySettings same = high.settings();
   same.energy_keV = low.settings().energy_keV;
   same.random = low.settings().random;
@@ -149,7 +149,7 @@ Result<Picture> without_soft_tissue(const Fluoroscope& low, const Fluoroscope& h
   std::vector<float> left(a.size());
   // Soft tissue is put at an optical depth of 1, so that the window takes it for the patient.
   for (std::size_t k = 0; k < left.size(); ++k) left[k] = 1.0F + a[k] - static_cast<float>(ratio) * b[k];
-  Picture picture = low.picture();
+  GreyPicture picture = low.picture();
   XrayDetector::shade(picture.columns, left, picture.pixels);
   return picture;
 }

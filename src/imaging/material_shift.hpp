@@ -12,25 +12,29 @@ class MaterialShift {
  public:
   MaterialShift(const TetMesh& mesh, int lines, int samples);
 
-  /// @param displacement (3 × nodes) [mm] LPS
-  void compute(const UltrasoundBeams& beams, const Moment& moment, DeformedSlice& slice);
+  static constexpr int kSampleStep = 5;  ///< samples from one point of the grid to the next
 
-  /// Whether the shift may differ from zero somewhere on a line.
-  [[nodiscard]] bool touches(int line) const;
+  /// @param slice has the nodes' places and the lines
+  void compute(const UltrasoundBeams& beams, const Moment& moment, const DeformedSlice& slice);
+
+  /// Whether the shift may differ from zero between two samples of a line.
+  [[nodiscard]] bool touches(int line, int from, int to) const;
   /// The shift [mm] LPS at a sample of a line.
   [[nodiscard]] Eigen::Vector3f at(int line, int sample) const;
 
  private:
-  static constexpr int kSampleStep = 5;
+  struct Range {
+    int first = 1, last = 0;  ///< columns that differ from zero; first > last: none
+  };
   [[nodiscard]] Vec3 solve(const UltrasoundBeams& beams, const DeformedSlice& slice, Index tet, const Vec4& weights,
                            const Vec3& x) const;
 
   const TetMesh* mesh_;
   NeedleField field_;
   int line_step_ = 2;
-  int lines_, samples_, columns_;  ///< columns: grid points along a line
+  int columns_;  ///< grid points along a line
   Eigen::Matrix3Xf grid_;
-  std::vector<std::uint8_t> touched_;  ///< (grid lines)
+  std::vector<Range> touched_;  ///< (grid lines)
 };
 
 }  // namespace stylet

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kRodStep_mm = 0.15;  // of the points along a rod
 constexpr double kFacetsWide = 0.7;   // extent of the facets across the lines, in diameters
-constexpr double kTail_mm = 5.0;      // length over which a comet tail falls to 1/e
+constexpr double kTail_mm = 3.5;      // length over which a comet tail falls to 1/e
 
 float amplitude_of(float dB) { return std::pow(10.0F, dB / 20.0F); }
 
@@ -47,7 +47,7 @@ RodLook needle_look(double diameter_mm) {
           .reverberations = 6,
           .reverberation_mm = 0.9 * diameter_mm,
           .reverberation_share = 0.36F,
-          .tail_share = 0.07F,
+          .tail_share = 0.16F,
           .shade = 0.45F};
 }
 
@@ -58,7 +58,7 @@ RodLook seed_look(double diameter_mm) {
           .reverberations = 3,
           .reverberation_mm = 1.2 * diameter_mm,
           .reverberation_share = 0.35F,
-          .tail_share = 0.03F,
+          .tail_share = 0.08F,
           .shade = 0.25F};
 }
 
@@ -88,7 +88,7 @@ void RodEchoes::add(std::span<const Vec3> centreline_mm, double diameter_mm, con
   const float strength = amplitude_of(look.level_dB) / spread.axial()[0];
   const float rough = amplitude_of(look.rough_dB);
   for (std::size_t k = 0; k + 1 < centreline_mm.size(); ++k) {
-    const Vec3 from = centreline_mm[k];
+    const Vec3& from = centreline_mm[k];
     const Vec3 way = centreline_mm[k + 1] - from;
     const double length = way.norm();
     if (!(length > 0.0)) continue;

@@ -43,7 +43,7 @@ void ScanConversion::prepare(const UltrasoundBeams& beams) {
   }
 }
 
-const Picture& ScanConversion::convert(const PolarPicture& polar) {
+const GreyPicture& ScanConversion::convert(const PolarPicture& polar) {
   prepare(polar.beams);
   picture_.right = polar.beams.across;
   picture_.down = -polar.beams.ahead;

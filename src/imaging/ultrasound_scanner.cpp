@@ -59,7 +59,7 @@ struct UltrasoundScanner::Parts {
         settings(settings_),
         features(features_),
         profile{settings_.frequency_MHz, settings_.focus_mm, settings_.elevation_mm},
-        slice(mesh_),
+        slice(mesh_, settings_.lines),
         lattice(static_cast<std::uint32_t>(settings_.random)),
         shift(mesh_, settings_.lines, settings_.samples),
         spread(profile, settings_.samples),
@@ -117,8 +117,10 @@ void UltrasoundScanner::Parts::fill(const Moment& moment) {
   hits.clear();
   std::fill(tets.begin(), tets.end(), Index{-1});
   std::fill(is_concretion.begin(), is_concretion.end(), std::uint8_t{0});
+  slice.place(beams, moment.displacement);
   shift.compute(beams, moment, slice);
-  slice.cut(beams, moment.displacement, [this](const BeamSpan& span) { fill(span); });
+  slice.cut(
+      beams, [this](const BeamSpan& span) { fill(span); }, [](Index) { return true; });
 }
 
 /// Fills the samples of a span with speckle.
@@ -145,16 +147,17 @@ void UltrasoundScanner::Parts::fill(const BeamSpan& span) {
 
 void UltrasoundScanner::Parts::fill_row(int line, int from, int to, float amplitude, const Eigen::Vector3f& p0,
                                         const Eigen::Vector3f& dp, const Vec3& x0, const Vec3& dx) {
-  constexpr int kLevelStep = 4;  // samples from one look at the map to the next
+  constexpr int kLevelStep = 5;  // samples from one look at the map to the next
   float* const real = field.real(line);
   float* const imaginary = field.imaginary(line);
-  const bool shifted = shift.touches(line);
+  const bool shifted = shift.touches(line, from, to);
   const std::size_t first = static_cast<std::size_t>(line) * static_cast<std::size_t>(beams.samples);
   const auto level_at = [&](int s) {
     Vec3 x = x0 + s * dx;
     if (shifted) x += shift.at(line, s).cast<double>();
     return map->at(map->position(x));
   };
+  Eigen::Vector3f moved = Eigen::Vector3f::Zero(), move = Eigen::Vector3f::Zero();  // on the lattice
   float level = -1.0F, slope = 0.0F;
   float next_level = map ? level_at(from) : -1.0F;
   for (int s = from; s <= to; ++s) {
@@ -174,7 +177,15 @@ void UltrasoundScanner::Parts::fill_row(int line, int from, int to, float amplit
       }
     }
     Eigen::Vector3f p = p0 + static_cast<float>(s) * dp;
-    if (shifted) p += lattice.difference(shift.at(line, s).cast<double>());
+    if (shifted) {
+      if (s == from || s % MaterialShift::kSampleStep == 0) {  // linear in between
+        const int next = (s / MaterialShift::kSampleStep + 1) * MaterialShift::kSampleStep;
+        moved = lattice.difference(shift.at(line, s).cast<double>());
+        move = (lattice.difference(shift.at(line, next).cast<double>()) - moved) / static_cast<float>(next - s);
+      }
+      p += moved;
+      moved += move;
+    }
     const std::complex<float> noise = lattice.at(p);
     share *= spread.noise_scale(s);
     real[s] = share * noise.real();
@@ -202,7 +213,7 @@ void UltrasoundScanner::Parts::attenuate() {
     return amplitude_of_dB(-(dB_per_cm_MHz - UltrasoundScanner::kCompensated_dB_per_cm_MHz) * profile.frequency_MHz *
                            way_cm);
   };
-  std::array<float, 256> factors;
+  std::array<float, 256> factors{};
   for (std::size_t r = 0; r < echoes.size(); ++r)
     factors[std::min<std::size_t>(r, 255)] = factor_of(echoes[r].attenuation_dB_per_cm_MHz);
   const float concretion = factor_of(kConcretion_dB_per_cm_MHz);
@@ -236,10 +247,10 @@ void UltrasoundScanner::Parts::add_borders() {
     field.add(hit.line, sample + rough, strength, 0.5F + 0.6F * patch.real(), 0.4F * patch.imag());
     if (hit.roughness_mm < 0.2) continue;
     // Parts of a rough surface lie deeper, differently from line to line.
-    for (int k = 1; k <= 4; ++k) {
+    for (int k = 1; k <= 6; ++k) {
       const std::complex<float> part = lattice.at(lattice.position((1.0 + 0.3 * k) * hit.at));
-      field.add(hit.line, sample + std::abs(rough) + 0.3 * k / beams.sample_mm, 0.6F * strength / static_cast<float>(k),
-                part.real(), part.imag());
+      field.add(hit.line, sample + std::abs(rough) + 0.18 * k / beams.sample_mm,
+                0.5F * strength / static_cast<float>(k), part.real(), part.imag());
     }
   }
 }
@@ -258,9 +269,9 @@ void UltrasoundScanner::Parts::compress() {
     if (features.artefacts) artefacts.add(s, s * beams.sample_mm, real, imaginary, row);
     for (std::size_t l = 0; l < n; ++l) {
       const float dB = kLogUnit_dB * quick_log2(std::max(row[l], 1e-20F));
-      const float value = std::clamp(scale * (dB + offset), 0.0F, 255.0F);
+      const float rounded = std::clamp(scale * (dB + offset) + 0.5F, 0.0F, 255.0F);
       grey[l * static_cast<std::size_t>(beams.samples) + static_cast<std::size_t>(s)] =
-          static_cast<std::uint8_t>(value + 0.5F);
+          static_cast<std::uint8_t>(rounded);
     }
   }
 }
@@ -334,7 +345,7 @@ Vec3 UltrasoundScanner::material_mm(int line, int sample) const {
   for (std::size_t k = 0; k < 4; ++k)
     x += weights[static_cast<Eigen::Index>(k)] *
          p.mesh.nodes[static_cast<std::size_t>(p.mesh.tets[static_cast<std::size_t>(tet)][k])];
-  if (p.shift.touches(line)) x += p.shift.at(line, sample).cast<double>();
+  if (p.shift.touches(line, sample, sample)) x += p.shift.at(line, sample).cast<double>();
   return x;
 }
 

@@ -268,7 +268,7 @@ Result<std::shared_ptr<const LiveImage>> ImageMaker::Parts::xray() {
   Moment shown_moment = moment;
   ImageJson probe = nullptr;
   if (pressing) probe = probe_json(probe_place(tables.probe, *seat), pressing->press(tables.probe, shown_moment));
-  const Picture& picture = fluoroscope->expose(shown_moment);
+  const GreyPicture& picture = fluoroscope->expose(shown_moment);
   auto image = std::make_shared<LiveImage>();
   image->rows = static_cast<std::uint32_t>(picture.rows);
   image->columns = static_cast<std::uint32_t>(picture.columns);

@@ -44,8 +44,8 @@ SeenImage image_of(const Peer::Message& m) {
 }
 
 /// An image of one grey value.
-stylet::Picture plain_image(std::uint8_t value) {
-  stylet::Picture image;
+GreyPicture plain_image(std::uint8_t value) {
+  GreyPicture image;
   image.columns = 64;
   image.rows = 32;
   image.pixels.assign(64 * 32, value);
@@ -69,7 +69,7 @@ TEST(LinkImages, pictures_of_the_fluoroscope_arrive_at_their_place_while_the_loo
   Moment moment = moment_at_rest(mesh);
   const auto publisher = ImagePublisher::start(
       *link,
-      [&](stylet::Picture& image) {
+      [&](GreyPicture& image) {
         moment.time_s += 0.05;
         image = (*unit)->expose(moment);
         return true;
@@ -118,7 +118,7 @@ TEST(LinkImages, of_images_that_come_too_fast_the_newest_are_sent_in_order) {
   while (last < 240) {
     const auto message = peer.next("IMAGE", "Image_Reference");
     ASSERT_TRUE(message);
-    const int value = image_of(*message).pixels.front();
+    const int value = image_of(*message).values.front();
     ASSERT_GT(value, last);
     last = value;
     ++received;
@@ -136,7 +136,7 @@ TEST(LinkImages, who_connects_later_gets_the_last_image) {
   Peer two = Peer::to(link->state().port);
   const auto message = two.next("IMAGE", "Image_Reference");
   ASSERT_TRUE(message);
-  EXPECT_EQ(image_of(*message).pixels, plain_image(9).pixels);
+  EXPECT_EQ(image_of(*message).values, plain_image(9).pixels);
 }
 
 TEST(LinkImages, the_probe_is_moved_from_the_other_side_and_its_pose_goes_out) {
@@ -156,7 +156,7 @@ TEST(LinkImages, the_probe_is_moved_from_the_other_side_and_its_pose_goes_out) {
   EXPECT_EQ(link->state().poses, 0) << "the needle is not moved by it";
   EXPECT_TRUE(comes_true([&] { return link->state().probe_poses > 0; }));
   {
-    stylet::igtl::Picture picture;
+    Picture picture;
     picture.has_probe = true;
     picture.probe = plain(probe);
     Peer display = Peer::to(link->state().port);
@@ -174,7 +174,7 @@ TEST(LinkImages, the_probe_is_moved_from_the_other_side_and_its_pose_goes_out) {
 TEST(LinkImages, images_that_are_none_and_rates_that_are_none_are_refused) {
   const auto link = opened(any_port());
   EXPECT_FALSE(link->publish_image({}));
-  stylet::Picture image = plain_image(1);
+  GreyPicture image = plain_image(1);
   image.pixels.pop_back();
   const auto missing = link->publish_image(image);
   ASSERT_FALSE(missing);
@@ -183,9 +183,9 @@ TEST(LinkImages, images_that_are_none_and_rates_that_are_none_are_refused) {
   image.columns = 70000;
   EXPECT_FALSE(link->publish_image(image));
   EXPECT_FALSE(ImagePublisher::start(
-      *link, [](stylet::Picture&) { return false; }, 0.0));
+      *link, [](GreyPicture&) { return false; }, 0.0));
   EXPECT_FALSE(ImagePublisher::start(
-      *link, [](stylet::Picture&) { return false; }, 1000.0));
+      *link, [](GreyPicture&) { return false; }, 1000.0));
 }
 
 TEST(LinkImages, a_source_without_a_newer_image_sends_none) {
@@ -193,7 +193,7 @@ TEST(LinkImages, a_source_without_a_newer_image_sends_none) {
   std::atomic<int> asked{0};
   const auto publisher = ImagePublisher::start(
       *link,
-      [&](stylet::Picture& image) {
+      [&](GreyPicture& image) {
         if (asked++ > 0) return false;
         image = plain_image(3);
         return true;

@@ -128,7 +128,7 @@ TEST(MessageWriter, surface) {
 }
 
 TEST(MessageWriter, image) {
-  stylet::Picture image;
+  GreyPicture image;
   image.columns = 3;
   image.rows = 2;
   image.mm_per_pixel = 0.5;

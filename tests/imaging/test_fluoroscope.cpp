@@ -456,7 +456,7 @@ TEST(Fluoroscope, dense_is_dark) {
   FluoroscopySettings settings = quiet();
   settings.field_mm = 140.0;
   const auto unit = unit_for(mesh, settings);
-  const Picture& picture = unit->expose(moment_at_rest(mesh));
+  const GreyPicture& picture = unit->expose(moment_at_rest(mesh));
   ASSERT_EQ(picture.pixels.size(), 256U * 256U);
   const auto at = [&](const Vec3& x) {
     const auto place = unit->geometry().place(x);
@@ -473,7 +473,7 @@ TEST(Fluoroscope, the_picture_knows_its_place_in_the_patient) {
   FluoroscopySettings settings = quiet();
   settings.angle_deg = -20.0;
   const auto unit = unit_for(mesh, settings);
-  const Picture& picture = unit->expose(moment_at_rest(mesh));
+  const GreyPicture& picture = unit->expose(moment_at_rest(mesh));
   const XrayGeometry& geometry = unit->geometry();
   for (const auto& [column, row] : {std::pair{0.0, 0.0}, std::pair{255.0, 0.0}, std::pair{17.0, 200.0}}) {
     const auto place = geometry.place(picture.point_mm(column, row));

@@ -155,7 +155,7 @@ TEST(ScanConversion, puts_an_echo_where_it_is_in_the_patient) {
     const Vec3 at(7.0, 41.0, 0.3);
     moment.tracks.push_back({{at - Vec3(0, 0, 0.1), at + Vec3(0, 0, 0.1)}, 0.01});
     ScanConversion conversion(0.2);
-    const Picture& picture = conversion.convert(scanner.scan(moment, beams));
+    const GreyPicture& picture = conversion.convert(scanner.scan(moment, beams));
     int best = -1;
     Vec3 shown = Vec3::Zero();
     for (int row = 0; row < picture.rows; ++row) {
@@ -177,7 +177,7 @@ TEST(ScanConversion, has_the_probe_at_the_bottom_and_black_beside_the_sector) {
   const UltrasoundBeams beams = block_beams({}, true);
   UltrasoundScanner scanner = plain_scanner(mesh, {{0.0, kLevel}});
   ScanConversion conversion(0.25);
-  const Picture& picture = conversion.convert(scanner.scan(moment_at_rest(mesh), beams));
+  const GreyPicture& picture = conversion.convert(scanner.scan(moment_at_rest(mesh), beams));
   EXPECT_LT((picture.down + beams.ahead).norm(), 1e-12);
   EXPECT_EQ(picture.at(0, 0), 0);
   EXPECT_EQ(picture.at(picture.rows - 1, 0), 0);

@@ -13,7 +13,7 @@ namespace stylet::igtl {
 class ImagePublisher {
  public:
   /// Makes the newest image. @return false if there is no newer one than last time
-  using Source = std::function<bool(stylet::Picture& image)>;
+  using Source = std::function<bool(GreyPicture& image)>;
 
   /// Starts the thread. Images that the link refuses are left out.
   /// @param link must outlive the publisher

@@ -3,7 +3,7 @@
 
 #include "stylet/core/result.hpp"
 #include "stylet/igtl/picture.hpp"
-#include "stylet/imaging/picture.hpp"
+#include "stylet/imaging/grey_picture.hpp"
 #include "stylet/realtime/device.hpp"
 
 #include <cstdint>
@@ -93,7 +93,7 @@ class Link {
   /// only, and once to every program that connects later. Call it from any thread but a real-time thread;
   /// ImagePublisher does so from a thread of its own. Errors: a picture without pixels, with more than 64 MiB of them,
   /// or whose size and values do not fit.
-  Result<> publish_image(stylet::Picture image);
+  Result<> publish_image(GreyPicture image);
   /// The pose (LPS) that the other program last sent for the probe, while it is usable and its sender is connected; as
   /// for the handle, one sender at a time moves the probe. Call it from one thread only, which may be a real-time
   /// thread.

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "stylet/core/result.hpp"
+#include "stylet/imaging/grey_picture.hpp"
 #include "stylet/imaging/moment.hpp"
-#include "stylet/imaging/picture.hpp"
 #include "stylet/imaging/xray_geometry.hpp"
 
 #include <memory>
@@ -29,10 +29,10 @@ class Fluoroscope {
   /// Makes the picture of a moment. Does not allocate. The same settings and moment give the same bits; the noise
   /// depends on the seed and on the moment's time. The picture lies in the plane through the centre.
   /// @param moment displacement has a column for each node of the mesh
-  const Picture& expose(const Moment& moment);
+  const GreyPicture& expose(const Moment& moment);
 
   /// The picture of the last exposure.
-  [[nodiscard]] const Picture& picture() const;
+  [[nodiscard]] const GreyPicture& picture() const;
   /// Share of the photons that came through in the last exposure, without noise and blur (pixels²), row by row.
   [[nodiscard]] std::span<const float> transmission() const;
   /// Optical depth that the detector saw in the last exposure (pixels²): −ln of its signal relative to air.
@@ -50,6 +50,6 @@ class Fluoroscope {
 /// ln-signal of the low energy less μ_low / μ_high times that of the high energy, μ of soft tissue. Bone, contrast and
 /// metal stay.
 /// Errors: pictures that differ in anything but the energy and the seed of their noise, or do not differ in energy.
-Result<Picture> without_soft_tissue(const Fluoroscope& low, const Fluoroscope& high);
+Result<GreyPicture> without_soft_tissue(const Fluoroscope& low, const Fluoroscope& high);
 
 }  // namespace stylet

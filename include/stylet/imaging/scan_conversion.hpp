@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "stylet/imaging/picture.hpp"
+#include "stylet/imaging/grey_picture.hpp"
 #include "stylet/imaging/ultrasound_scanner.hpp"
 
 namespace stylet {
@@ -13,7 +13,7 @@ class ScanConversion {
   explicit ScanConversion(double mm_per_pixel = 0.2) : mm_per_pixel_(mm_per_pixel) {}
 
   /// @return valid until the next call. Allocates only when the lines lie differently to each other than before.
-  const Picture& convert(const PolarPicture& polar);
+  const GreyPicture& convert(const PolarPicture& polar);
 
  private:
   struct Source {
@@ -26,7 +26,7 @@ class ScanConversion {
   double left_mm_ = 0.0, top_mm_ = 0.0;  ///< of the first pixel, in the plane
   UltrasoundBeams beams_;
   std::vector<Source> sources_;
-  Picture picture_;
+  GreyPicture picture_;
 };
 
 }  // namespace stylet

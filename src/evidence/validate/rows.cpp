@@ -35,7 +35,8 @@ std::vector<RowSpec> collect() {
                            probe_rows(),
                            dose_rows(),
                            implant_rows(),
-                           implant_dose_rows()})
+                           implant_dose_rows(),
+                           ultrasound_rows()})
     rows.insert(rows.end(), more.begin(), more.end());
   std::stable_sort(rows.begin(), rows.end(), [](const RowSpec& a, const RowSpec& b) { return a.group < b.group; });
   return rows;

@@ -34,5 +34,6 @@ std::vector<RowSpec> probe_rows();
 std::vector<RowSpec> dose_rows();
 std::vector<RowSpec> implant_rows();
 std::vector<RowSpec> implant_dose_rows();
+std::vector<RowSpec> ultrasound_rows();
 
 }  // namespace stylet::validate

@@ -11,11 +11,12 @@
 
 namespace stylet {
 
-Result<> write_picture_mha(std::span<const Picture> pictures, double distance_mm, const std::filesystem::path& path) {
+Result<> write_picture_mha(std::span<const GreyPicture> pictures, double distance_mm,
+                           const std::filesystem::path& path) {
   if (pictures.empty()) return failure(path.string(), "there is no picture to be written", "Give one");
-  const Picture& first = pictures.front();
+  const GreyPicture& first = pictures.front();
   std::vector<std::uint8_t> voxels;
-  for (const Picture& picture : pictures) {
+  for (const GreyPicture& picture : pictures) {
     if (picture.columns != first.columns || picture.rows != first.rows || !picture.right.isApprox(first.right) ||
         !picture.down.isApprox(first.down))
       return failure(path.string(), "the pictures differ in size or orientation", "Write a file for each of them");

@@ -81,7 +81,7 @@ double bar_length(double width_mm) {
 }
 
 /// A bar with feet at its ends, and its length in words.
-void draw_bar(Sheet& sheet, const Picture& picture, const std::string& note, int left, int row) {
+void draw_bar(Sheet& sheet, const GreyPicture& picture, const std::string& note, int left, int row) {
   const double length_mm = bar_length(picture.columns * picture.mm_per_pixel);
   const int length = static_cast<int>(std::lround(length_mm / picture.mm_per_pixel));
   sheet.fill(left, row, length, 2, kInk);
@@ -90,8 +90,8 @@ void draw_bar(Sheet& sheet, const Picture& picture, const std::string& note, int
 }
 
 /// The same picture with each pixel as a square of some pixels.
-Picture enlarged(const Picture& picture, int by) {
-  Picture large = picture;
+GreyPicture enlarged(const GreyPicture& picture, int by) {
+  GreyPicture large = picture;
   large.columns *= by;
   large.rows *= by;
   large.mm_per_pixel /= by;
@@ -104,7 +104,7 @@ Picture enlarged(const Picture& picture, int by) {
   return large;
 }
 
-void draw_scale(Sheet& sheet, const Picture& picture, double surface_row, int left, int top) {
+void draw_scale(Sheet& sheet, const GreyPicture& picture, double surface_row, int left, int top) {
   const double step = 10.0 / picture.mm_per_pixel;
   sheet.fill(left, top, 1, std::min(picture.rows, static_cast<int>(surface_row) + 1), kInk / 2);
   for (int cm = 0; surface_row - cm * step >= 0.0; ++cm) {
@@ -117,9 +117,9 @@ void draw_scale(Sheet& sheet, const Picture& picture, double surface_row, int le
 
 }  // namespace
 
-Result<> write_picture_png(const Picture& original, const PictureMarks& marks, const std::filesystem::path& path) {
+Result<> write_picture_png(const GreyPicture& original, const PictureMarks& marks, const std::filesystem::path& path) {
   const int by = std::max(1, (kNarrowest + original.columns - 1) / std::max(1, original.columns));
-  const Picture picture = enlarged(original, by);
+  const GreyPicture picture = enlarged(original, by);
   const int top = marks.title.empty() ? kMargin : kTextHeight;
   const int bottom = (marks.notice.empty() ? kMargin : kTextHeight) + (marks.bar_note ? kTextHeight : 0);
   const int right = marks.surface_row ? kScaleWidth : kMargin;

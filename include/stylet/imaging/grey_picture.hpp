@@ -9,7 +9,7 @@
 namespace stylet {
 
 /// A rectangular grey picture of a plane in the patient.
-struct Picture {
+struct GreyPicture {
   int columns = 0;
   int rows = 0;
   std::vector<std::uint8_t> pixels;  ///< (rows × columns) row by row from the top; 0 is black

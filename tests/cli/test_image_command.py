@@ -1,0 +1,87 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""stylet image: pictures of a patient at rest and of a recorded run, where they are in LPS, and what is refused."""
+import re
+import tempfile
+import unittest
+from pathlib import Path
+
+from program import InFolder, run
+
+DEMO = Path(__file__).resolve().parents[2] / "scenarios/demo.toml"
+COARSE = ("--set", "mesh.nodes=1500")
+QUICK = ("--set", "output.pictures=false", "--set", "output.max_frames=10", "--set", "run.dt_ms=8")
+
+
+class Image(InFolder):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory(prefix="stylet-cli-run-")
+        cls.addClassCleanup(folder.cleanup)
+        done = run("insert", DEMO, *COARSE, *QUICK, "-o", folder.name)
+        assert done.returncode == 0, done.stderr
+        cls.recording = Path(folder.name) / "run.h5"
+
+    def test_transverse_picture_of_the_patient_at_rest(self):
+        report = self.json_of("image", DEMO, *COARSE, "--template", "-o", "new/us.png")
+        self.assertEqual((self.folder / "new/us.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertEqual((report["array"], report["needles"], report["lines"], report["samples"]),
+                         ("transverse", 0, 256, 560))
+        self.assertIn("not a medical device", report["notice"])
+        picture, = report["pictures"]
+        across, down, normal, corner = zip(*picture["pixel_to_lps"][:3])
+        mm = picture["mm_per_pixel"]
+        for found, expected in zip(across + down + normal, (mm, 0, 0, 0, mm, 0, 0, 0, 1)):
+            self.assertAlmostEqual(found, expected, msg="columns go to the left, rows to posterior")
+        self.assertAlmostEqual(corner[2], picture["z_mm"])
+
+    def test_z_moves_the_plane_and_the_same_seed_gives_the_same_picture(self):
+        files = []
+        for name, z in (("a.mha", "5"), ("b.mha", "5"), ("c.mha", "-5")):
+            report = self.json_of("image", self.recording, "--z", z, "-o", name)
+            self.assertAlmostEqual(report["pictures"][0]["pixel_to_lps"][2][3], float(z))
+            files.append((self.folder / name).read_bytes())
+        self.assertEqual(files[0], files[1])
+        self.assertNotEqual(files[0], files[2])
+
+    def test_all_planes_as_numbered_pictures_and_as_one_volume(self):
+        several = self.json_of("image", self.recording, "--all", "-o", "us.png")["pictures"]
+        heights = [picture["z_mm"] for picture in several]
+        self.assertGreater(len(several), 5)
+        for below, above in zip(heights, heights[1:]):
+            self.assertAlmostEqual(above - below, 5.0)
+        self.assertEqual(sorted(p.name for p in self.folder.glob("*.png")),
+                         [f"us_{k + 1:02}.png" for k in range(len(several))])
+        one = self.json_of("image", self.recording, "--all", "-o", "us.mha")["pictures"]
+        header = (self.folder / "us.mha").read_bytes().split(b"ElementDataFile")[0].decode()
+        value = lambda key: [float(x) for x in re.search(key + r" = (.*)", header).group(1).split()]
+        self.assertEqual(value("DimSize"), [one[0]["columns"], one[0]["rows"], len(several)])
+        for found, expected in zip(value("ElementSpacing"), (0.2, 0.2, 5.0)):
+            self.assertAlmostEqual(found, expected)
+        for found, expected in zip(value("Offset"), [row[3] for row in one[0]["pixel_to_lps"][:3]]):
+            self.assertAlmostEqual(found, expected, places=4)
+        for found, expected in zip(value("TransformMatrix"), (1, 0, 0, 0, 1, 0, 0, 0, 1)):
+            self.assertAlmostEqual(found, expected)
+
+    def test_recorded_run_shows_its_needle(self):
+        deepest = self.json_of("image", self.recording, "--array", "sagittal", "-o", "deepest.png")
+        self.assertEqual((deepest["needles"], deepest["array"]), (1, "sagittal"))
+        self.assertGreater(deepest["time_s"], 1.0)
+        earlier = self.json_of("image", self.recording, "--time", "2", "--set", "ultrasound.lines=64", "-o", "earlier.png")
+        self.assertEqual((earlier["time_s"], earlier["lines"]), (2.0, 64))
+        self.refuse("image", self.recording, "--time", "1000", "-o", "late.png", says=["--time", "1000 s", "ends at"])
+
+    def test_bad_input_is_refused(self):
+        self.refuse("image", DEMO, "-o", "us.jpg", says=["us.jpg", ".png or .mha"])
+        self.refuse("image", DEMO, "--time", "1", "-o", "us.png", says=["--time", "scenario"])
+        self.refuse("image", DEMO, "--all", "--z", "3", "-o", "us.png", says=["--z", "--all"])
+        self.refuse("image", DEMO, "--template", "-o", "us.mha", says=["--template"])
+        self.refuse("image", self.recording, "--array", "sagittal", "--all", "-o", "us.png", says=["--all", "transverse"])
+        self.refuse("image", DEMO, "--array", "coronal", "-o", "us.png", says=["coronal"])
+        self.refuse("image", "missing.toml", "-o", "us.png", says=["missing.toml"])
+        self.refuse("image", DEMO, "--set", "ultrasound.lines=4", "-o", "us.png", says=["ultrasound.lines"])
+        self.refuse("image", DEMO, says=["--output is required"])
+
+
+if __name__ == "__main__":
+    unittest.main()
