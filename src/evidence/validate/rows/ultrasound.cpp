@@ -101,8 +101,9 @@ Result<Finding> attenuation(Context&) {
   finding.plot.curves = {ours, law};
   finding.plot.x_label = "depth [mm]";
   finding.plot.y_label = "loss [dB]";
-  finding.note = fmt::format("The loss of speckle with depth in tissue of {:g} dB/(cm MHz) at {:g} MHz, from 15 to 75 mm.",
-                             kAlpha, block.settings.frequency_MHz);
+  finding.note =
+      fmt::format("The loss of speckle with depth in tissue of {:g} dB/(cm MHz) at {:g} MHz, from 15 to 75 mm.", kAlpha,
+                  block.settings.frequency_MHz);
   finding.why_missed = "The sum over samples along a line is wrong.";
   return finding;
 }
