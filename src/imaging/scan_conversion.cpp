@@ -57,7 +57,8 @@ const GreyPicture& ScanConversion::convert(const PolarPicture& polar) {
       return static_cast<float>(p[0]) + source.depth * static_cast<float>(p[1] - p[0]);
     };
     const float one = along(near), two = along(near + samples);
-    picture_.pixels[k] = static_cast<std::uint8_t>(one + source.line * (two - one) + 0.5F);
+    const float rounded = one + source.line * (two - one) + 0.5F;
+    picture_.pixels[k] = static_cast<std::uint8_t>(rounded);
   }
   return picture_;
 }
