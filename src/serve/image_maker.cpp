@@ -138,6 +138,7 @@ struct ImageMaker::Parts {
   [[nodiscard]] bool may_press() const { return patient.scenario.probe.kind != ProbeKind::none && patient.field; }
   [[nodiscard]] ImageJson probe_json(const ProbePlace& place, const std::optional<double>& force_N) const;
   Result<> prepare_probe(const std::function<void(const std::string&)>& tell);
+  Result<> prepare_scanner(const std::function<void(const std::string&)>& tell);
   Result<std::shared_ptr<const LiveImage>> ultrasound();
   Result<std::shared_ptr<const LiveImage>> xray();
 };
@@ -214,18 +215,22 @@ Result<> ImageMaker::Parts::prepare_probe(const std::function<void(const std::st
   return Ok{};
 }
 
+Result<> ImageMaker::Parts::prepare_scanner(const std::function<void(const std::string&)>& tell) {
+  if (scanner) return Ok{};
+  tell("The scanner is being prepared");
+  UltrasoundSettings settings = tables.ultrasound;
+  settings.gain_dB = 0.0;
+  settings.dynamic_range_dB = kImageRange_dB;
+  std::vector<TissueEcho> echoes;
+  for (const std::string& region : patient.mesh->regions) echoes.push_back(tissue_of(patient.scenario, region).echo);
+  auto made = UltrasoundScanner::create(*patient.mesh, echoes, settings);
+  if (!made) return made.error();
+  scanner.emplace(std::move(*made));
+  return Ok{};
+}
+
 Result<std::shared_ptr<const LiveImage>> ImageMaker::Parts::ultrasound() {
   const double before = processor_ms();
-  if (!scanner) {
-    UltrasoundSettings settings = tables.ultrasound;
-    settings.gain_dB = 0.0;
-    settings.dynamic_range_dB = kImageRange_dB;
-    std::vector<TissueEcho> echoes;
-    for (const std::string& region : patient.mesh->regions) echoes.push_back(tissue_of(patient.scenario, region).echo);
-    auto made = UltrasoundScanner::create(*patient.mesh, echoes, settings);
-    if (!made) return made.error();
-    scanner.emplace(std::move(*made));
-  }
   const ProbeKind kind = tables.probe.kind == ProbeKind::none ? ProbeKind::biplane : tables.probe.kind;
   const ProbePlace place = probe_place(tables.probe, *seat);
   Moment shown_moment = moment;
@@ -291,7 +296,9 @@ Result<std::shared_ptr<const LiveImage>> ImageMaker::make(const std::function<vo
   if (!is_xray || parts_->may_press()) {
     if (auto prepared = parts_->prepare_probe(tell); !prepared) return prepared.error();
   }
-  return is_xray ? parts_->xray() : parts_->ultrasound();
+  if (is_xray) return parts_->xray();
+  if (auto prepared = parts_->prepare_scanner(tell); !prepared) return prepared.error();
+  return parts_->ultrasound();
 }
 
 }  // namespace stylet::serve
