@@ -217,7 +217,7 @@ test('a preloaded needle leaves its train as it is drawn back; a lost seed is sa
   assert.match(await page.locator('.todo').textContent(), /train of \d seeds: push in/);
   await goToSeed();
   await page.keyboard.press('d');
-  await page.locator('.todo', { hasText: 'draw back' }).waitFor();
+  await page.locator('.todo', { hasText: ': draw back' }).waitFor();  // 'Drop, then draw back' is said before
   await keepPicture(page, 'implant-train');
   await page.keyboard.press('g');
   const { seeds } = newest[PLAN].needles[newest[PLAN].current];
