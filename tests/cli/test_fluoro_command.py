@@ -90,11 +90,12 @@ class Fluoro(InFolder):
         width, height, rows, texts = png(self.folder / "new/x.png")
         self.assertGreaterEqual(width, 512, "a small picture is enlarged")
         self.assertGreater(height, 512, "with a strip below it")
-        self.assertEqual(rows[4][4], 255, "air")
-        self.assertLess(rows[256][256], 200, "the patient is darker")
+        left, top = 8, 26  # a margin and the title
+        self.assertEqual(rows[top + 4][left + 4], 255, "air")
+        self.assertLess(rows[top + 256][left + 256], 200, "the patient is darker")
         self.assertIn(b"not a medical device", texts)
         # A bar of 20 mm, which is 128 of the enlarged pixels.
-        longest = max(len(run_of) for row in rows[512:] for run_of in bytes(row).split(b"\0") if set(run_of) == {235})
+        longest = max(len(run_of) for row in rows[top + 512:] for run_of in bytes(row).split(b"\0") if set(run_of) == {200})
         self.assertEqual(longest, 128)
 
     def test_a_metaimage_has_the_place_of_its_pixels_in_the_patient(self):

@@ -138,6 +138,7 @@ Result<> write_picture_png(const GreyPicture& original, const PictureMarks& mark
 
   vtkNew<vtkPNGWriter> writer;
   writer->WriteToMemoryOn();
+  if (!marks.notice.empty()) writer->AddText("Comment", marks.notice.c_str());
   writer->SetInputData(sheet.image());
   writer->Write();
   vtkUnsignedCharArray* const bytes = writer->GetResult();
