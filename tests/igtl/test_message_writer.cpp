@@ -132,7 +132,6 @@ TEST(MessageWriter, image) {
   image.columns = 3;
   image.rows = 2;
   image.mm_per_pixel = 0.5;
-  image.mm_per_pixel = 0.25;
   image.corner_mm = {10, 20, 30};
   image.right = {0, 1, 0};  // to posterior
   image.down = {0, 0, -1};  // to inferior
@@ -150,12 +149,12 @@ TEST(MessageWriter, image) {
   EXPECT_EQ(std::vector<std::uint8_t>(values, values + 6), image.pixels);
   std::array<float, 3> spacing{};
   message->GetSpacing(spacing.data());
-  EXPECT_EQ(spacing, (std::array{0.5F, 0.25F, 0.5F}));
+  EXPECT_EQ(spacing, (std::array{0.5F, 0.5F, 0.5F}));
   // The library gives directions of unit length and the middle of the image as the origin, RAS: one pixel to posterior
   // and half a pixel to inferior from the first.
   ::igtl::Matrix4x4 m;
   message->GetMatrix(m);
-  const float expected[4][4] = {{0, 0, 1, -10}, {-1, 0, 0, -20.5F}, {0, -1, 0, 29.875F}, {0, 0, 0, 1}};
+  const float expected[4][4] = {{0, 0, 1, -10}, {-1, 0, 0, -20.5F}, {0, -1, 0, 29.75F}, {0, 0, 0, 1}};
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j) EXPECT_NEAR(m[i][j], expected[i][j], 1e-5) << i << ' ' << j;
 }

@@ -52,6 +52,9 @@ constexpr std::array kTables{
     TableText{"procedure", "[procedure]", "How the needles of the plan go in and out."},
     TableText{"seed", "[seed]", "What becomes of a seed, beside the motion of the tissue."},
     TableText{"oedema", "[oedema]", "Swelling of the gland after the implantation, for the dose."},
+    TableText{"probe", "[probe]", "The ultrasound probe in the rectum: what it is and where its stepper holds it."},
+    TableText{"ultrasound", "[ultrasound]", "The ultrasound scanner, for pictures."},
+    TableText{"fluoroscopy", "[fluoroscopy]", "The X-ray unit, for pictures."},
     TableText{"run", "[run]", "The simulation."},
     TableText{"output", "[output]", "The frames and pictures that are kept."},
 };

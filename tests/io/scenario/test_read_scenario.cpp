@@ -230,8 +230,8 @@ TEST(ReadScenario, refuses_unknown_tables_with_the_nearest_also_when_they_are_em
               {"line 3", "unknown table tissues", "Did you mean [tissue.REGION]?"});
   expect_says(refused(kHead + "[[insertions]]\n"),
               {"line 3", "unknown table insertions", "Did you mean [[insertion]]?"});
-  expect_says(refused(kHead + "[ultrasound]\n"),
-              {"line 3", "unknown table ultrasound", "The tables are [patient], ", "[tissue.REGION]", "[[insertion]]"});
+  expect_says(refused(kHead + "[surgeon]\n"),
+              {"line 3", "unknown table surgeon", "The tables are [patient], ", "[tissue.REGION]", "[[insertion]]"});
   expect_says(refused(kHead + "[mesh.fine]\n"), {"line 3", "unknown table mesh.fine"});
 }
 
