@@ -11,7 +11,7 @@
 
 namespace stylet {
 
-/// What a picture has besides speckle, attenuation, interfaces, needles and seeds.
+/// Parts of a picture besides speckle, attenuation, interfaces, needles and seeds.
 struct UltrasoundFeatures {
   bool anatomy = true;    ///< detail inside the regions: texture, layers of the rectal wall, assumed zones, concretions
   bool artefacts = true;  ///< rings near the transducer, clutter, side lobes, and the receiver's noise

@@ -16,7 +16,7 @@ namespace stylet {
 /// The line that stands on every picture of a patient.
 inline constexpr const char* kPictureNotice = "simulated; not a medical device";
 
-/// What is drawn on a picture for people. The pixels of a GreyPicture itself stay free of it.
+/// The marks that are drawn on a picture for people. The pixels of a GreyPicture itself stay free of it.
 struct PictureMarks {
   std::optional<double> surface_row;             ///< row at the depth 0: a scale in cm goes up from it; empty: no scale
   std::vector<std::array<double, 2>> dots = {};  ///< places (column, row)

@@ -49,7 +49,7 @@ class PatientProbe {
   GlandMeasure measure_;
 };
 
-/// What a report says about the probe of a scenario.
+/// The figures of a report about the probe of a scenario.
 struct ProbeReport {
   ProbeSettings settings;
   ProbePlace place;

@@ -9,7 +9,7 @@
 
 namespace stylet {
 
-/// What a probe and a wall do to each other at one pose.
+/// The forces between a probe and a wall at one pose.
 struct ProbePress {
   Vec3 force_N = Vec3::Zero();     ///< LPS, of the tissue on the probe
   Vec3 moment_Nmm = Vec3::Zero();  ///< LPS, of the tissue on the probe about Capsule::centre_mm

@@ -8,7 +8,7 @@
 
 namespace stylet {
 
-/// What is in the rectum while pictures are made.
+/// The kind of probe in the rectum while pictures are made.
 enum class ProbeKind {
   none,
   biplane,  ///< a rod with a transverse and a sagittal array near its rounded end
@@ -71,7 +71,7 @@ struct FluoroscopySettings {
   bool operator==(const FluoroscopySettings&) const = default;
 };
 
-/// What ultrasound meets in a tissue: keys of [tissue.NAME].
+/// Echo and attenuation of ultrasound in a tissue: keys of [tissue.NAME].
 struct TissueEcho {
   double echo_dB = 0.0;                    ///< strength of the speckle, relative to the gland's peripheral zone
   double attenuation_dB_per_cm_MHz = 0.5;  ///< one way
