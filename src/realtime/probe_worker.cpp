@@ -4,6 +4,8 @@
 #include "thread_setup.hpp"
 
 #include <chrono>
+#include <stdexcept>
+#include <string>
 
 namespace stylet {
 
@@ -17,6 +19,10 @@ ProbeWorker::ProbeWorker(ProbeContact contact, std::vector<Index> nodes)
     : contact_(std::move(contact)),
       nodes_(std::move(nodes)),
       nodes_count_(nodes_.empty() ? contact_.wall().nodes.rows() / 3 : static_cast<Eigen::Index>(nodes_.size())) {
+  for (const Index node : nodes_) {
+    if (node < 0 || 3 * Eigen::Index{node} >= contact_.wall().nodes.rows())
+      throw std::out_of_range("ProbeWorker: node " + std::to_string(node) + " is not in the mesh");
+  }
   for (Eigen::Matrix3Xf& field : fields_) field = Eigen::Matrix3Xf::Zero(3, nodes_count_);
   thread_ = std::thread([this] { run(); });
 }

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
+
 namespace stylet {
 namespace {
 
@@ -46,7 +48,7 @@ TEST(ProbeWorker, field_that_was_fetched_stays_while_the_probe_moves_on) {
 }
 
 TEST(ProbeWorker, gives_only_the_nodes_asked_for) {
-  const std::vector<Index> nodes{5, 200, 17};
+  const std::vector<Index> nodes{5, 190, 17};
   ProbeWorker worker{ProbeContact(small_wall()), nodes};
   wait_for(worker, worker.move(testing::lying_on(3.0)));
   ProbeContact direct(small_wall());
@@ -55,6 +57,12 @@ TEST(ProbeWorker, gives_only_the_nodes_asked_for) {
   direct.displacement(nodes, u);
   ASSERT_EQ(worker.displacement().cols(), 3);
   EXPECT_LT((worker.displacement() - u).cwiseAbs().maxCoeff(), 1e-5F);
+}
+
+TEST(ProbeWorker, refuses_a_node_that_the_mesh_does_not_have) {
+  const auto beyond = static_cast<Index>(small_wall()->nodes.rows() / 3);
+  for (const Index node : {-1, beyond})
+    EXPECT_THROW(ProbeWorker(ProbeContact(small_wall()), {0, node}), std::out_of_range) << node;
 }
 
 TEST(ProbeWorker, moving_and_fetching_do_not_allocate) {

@@ -26,7 +26,8 @@ class ProbeWorker {
     const float* displacement = nullptr;  ///< [mm] LPS (3 × nodes asked for), column-major; see displacement()
   };
 
-  /// Starts the thread; throws std::system_error if the system provides none.
+  /// Starts the thread; throws std::system_error if the system provides none, std::out_of_range for a node that the
+  /// mesh does not have.
   /// @param contact may have a reference pose
   /// @param nodes nodes of the mesh whose displacement is wanted; empty: all
   explicit ProbeWorker(ProbeContact contact, std::vector<Index> nodes = {});
