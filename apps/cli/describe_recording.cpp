@@ -66,6 +66,18 @@ std::size_t count_of(const RecordedImplant& implant, SeedAct::Kind kind) {
 
 Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
+Json moves_json(const std::vector<ProbeMove>& moves) {
+  Json json = Json::array();
+  for (const ProbeMove& move : moves) {
+    json.push_back({{"time_s", move.time_s},
+                    {"depth_mm", move.probe.depth_mm ? Json(*move.probe.depth_mm) : Json(nullptr)},
+                    {"lift_mm", move.probe.lift_mm},
+                    {"tilt_deg", move.probe.tilt_deg},
+                    {"roll_deg", move.probe.roll_deg}});
+  }
+  return json;
+}
+
 Json implant_json(const RecordedImplant& implant) {
   const RecordedPlan& plan = implant.plan;
   Json acts = Json::array();
@@ -149,6 +161,7 @@ Description describe(const RunRecording& run) {
       {"events", finished ? events_json(run.summary->events) : Json::array()},
       {"warnings", warnings}};
 
+  if (!run.probe_moves.empty()) out.json["probe_moves"] = moves_json(run.probe_moves);
   if (run.implant) out.json["implant"] = implant_json(*run.implant);
 
   Facts facts;
@@ -165,6 +178,9 @@ Description describe(const RunRecording& run) {
   facts.add("largest base depth", fmt::format("{:.1f} mm", peaks.depth_mm));
   facts.add("peak force", fmt::format("axial {:.2f} N, sagittal {:.2f} N, lateral {:.2f} N", peaks.axial_N,
                                       peaks.sagittal_N, peaks.lateral_N));
+  if (!run.probe_moves.empty())
+    facts.add("probe", fmt::format("recorded at {} place{}, at the end lifted by {:g} mm", run.probe_moves.size(),
+                                   run.probe_moves.size() == 1 ? "" : "s", run.probe_moves.back().probe.lift_mm));
   if (run.implant) add_implant(facts, *run.implant);
   out.text = facts.text();
   if (run.implant && !run.implant->acts.empty()) out.text += "\n\n" + acts_text(*run.implant);

@@ -20,6 +20,8 @@ class RecordedMoments {
 
   /// Before the first frame nothing has moved; after the last one the result is the last frame.
   [[nodiscard]] Moment at(double time_s) const;
+  /// Where the stepper held the probe; empty: the recording has no probe.
+  [[nodiscard]] std::optional<ProbeSettings> probe_at(double time_s) const;
   /// The time of the frame at which the needle is deepest [s]; 0 without a frame.
   [[nodiscard]] double deepest_s() const;
 

@@ -4,6 +4,7 @@
 #include "stylet/core/result.hpp"
 #include "stylet/geom/tet_mesh.hpp"
 #include "stylet/implant/recorded_implant.hpp"
+#include "stylet/sim/probe_move.hpp"
 #include "stylet/sim/recording.hpp"
 
 #include <filesystem>
@@ -27,6 +28,7 @@ class RunRecorder {
   Result<> add_step(const Step& step);
   Result<> add_event(const Event& event);
   Result<> add_frame(const Frame& frame);  ///< stores the displacement in single precision
+  Result<> add_probe_move(const ProbeMove& move);
   // Without a plan, these two are not recorded.
   Result<> add_act(const SeedAct& act);
   Result<> add_dose(const RecordedScore& dose);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/io/recorded_moments.hpp"
 
+#include "stylet/geom/displaced.hpp"
 #include "stylet/imaging/needle_field.hpp"
 #include "stylet/io/scenario_io.hpp"
 
@@ -16,28 +17,10 @@ Eigen::Map<const Eigen::Matrix3Xd> nodal(const Frame& frame) {
   return {frame.displacement.data(), 3, frame.displacement.size() / 3};
 }
 
-/// Displacement of a material point that the mesh represents.
-Vec3 displacement_of(const TetMesh& mesh, const Eigen::Matrix3Xf& displacement, const MaterialPoint& at) {
-  Vec3 u = Vec3::Zero();
-  const auto& corners = mesh.tets[static_cast<std::size_t>(at.tet)];
-  for (std::size_t k = 0; k < corners.size(); ++k)
-    u += at.weights[static_cast<Eigen::Index>(k)] * displacement.col(corners[k]).cast<double>();
-  return u;
-}
-
-/// The undeformed place of a point of the deformed patient, by fixed-point iteration; the point itself if it is outside
-/// of the tissue.
-Vec3 undeformed(const Locator& locator, const Eigen::Matrix3Xf& displacement, const Vec3& x) {
-  Vec3 at = x;
-  for (int k = 0; k < 20; ++k) {
-    const auto found = locator.find(at);
-    if (!found) return x;
-    const Vec3 next = x - displacement_of(locator.mesh(), displacement, *found);
-    const bool done = (next - at).norm() < 1e-4;
-    at = 0.5 * (at + next);
-    if (done) break;
-  }
-  return at;
+/// The frame in which the needle is deepest; the end if there are no frames.
+std::vector<Frame>::const_iterator deepest_of(const std::vector<Frame>& frames) {
+  return std::max_element(frames.begin(), frames.end(),
+                          [](const Frame& a, const Frame& b) { return a.base_depth_mm < b.base_depth_mm; });
 }
 
 /// The direction of the needle nearest to a point.
@@ -103,8 +86,7 @@ std::vector<ShownForce> RecordedMoments::forces_of(const Frame& frame, const Eig
 /// The track of the needle beyond its tip, after it has been drawn back from the deepest frame until then.
 void RecordedMoments::add_track(Moment& moment) const {
   const auto& frames = recording_.frames;
-  const auto deepest = std::max_element(
-      frames.begin(), frames.end(), [](const Frame& a, const Frame& b) { return a.base_depth_mm < b.base_depth_mm; });
+  const auto deepest = deepest_of(frames);
   if (deepest == frames.end() || deepest->time_s >= moment.time_s || deepest->needle.size() < 2) return;
   const Eigen::Matrix3Xf then = nodal(*deepest).cast<float>();
   ShownTrack track{{}, recording_.info.needle_diameter_mm};
@@ -157,10 +139,17 @@ Moment RecordedMoments::at(double time_s) const {
   return moment;
 }
 
+std::optional<ProbeSettings> RecordedMoments::probe_at(double time_s) const {
+  if (!scenario_ || scenario_->probe.kind == ProbeKind::none) return std::nullopt;
+  const auto& moves = recording_.probe_moves;
+  const auto next =
+      std::find_if(moves.begin(), moves.end(), [&](const ProbeMove& move) { return move.time_s > time_s; });
+  if (next != moves.begin()) return std::prev(next)->probe;
+  return moves.empty() ? scenario_->probe : moves.front().probe;
+}
+
 double RecordedMoments::deepest_s() const {
-  const auto deepest =
-      std::max_element(recording_.frames.begin(), recording_.frames.end(),
-                       [](const Frame& a, const Frame& b) { return a.base_depth_mm < b.base_depth_mm; });
+  const auto deepest = deepest_of(recording_.frames);
   return deepest == recording_.frames.end() ? 0.0 : deepest->time_s;
 }
 

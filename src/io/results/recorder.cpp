@@ -39,6 +39,13 @@ Result<> Recorder::add_event(const Event& event) {
   return Ok{};
 }
 
+Result<> Recorder::add_probe_move(const ProbeMove& move) {
+  const std::lock_guard lock(mutex_);
+  if (error_) return *error_;
+  moves_.push_back(move);
+  return Ok{};
+}
+
 Result<> Recorder::add_act(const SeedAct& act) {
   const std::lock_guard lock(mutex_);
   if (error_) return *error_;
@@ -57,6 +64,7 @@ Result<> Recorder::write_pending() {
   std::vector<Step> steps;
   std::vector<StoredFrame> frames;
   std::vector<Event> events;
+  std::vector<ProbeMove> moves;
   std::vector<SeedAct> acts;
   std::vector<RecordedScore> doses;
   {
@@ -64,16 +72,20 @@ Result<> Recorder::write_pending() {
     steps.swap(steps_);
     frames.swap(frames_);
     events.swap(events_);
+    moves.swap(moves_);
     acts.swap(acts_);
     doses.swap(doses_);
   }
-  if (steps.empty() && frames.empty() && events.empty() && acts.empty() && doses.empty()) return Ok{};
+  if (steps.empty() && frames.empty() && events.empty() && moves.empty() && acts.empty() && doses.empty()) return Ok{};
   if (auto done = writer_.append_steps(steps); !done) return done;
   for (const StoredFrame& frame : frames) {
     if (auto done = writer_.append_frame(frame); !done) return done;
   }
   if (!events.empty()) {
     if (auto done = writer_.append_events(events); !done) return done;
+  }
+  if (!moves.empty()) {
+    if (auto done = writer_.append_probe_moves(moves); !done) return done;
   }
   if (!acts.empty() || !doses.empty()) {
     if (auto done = writer_.append_seeds(acts, doses); !done) return done;

@@ -22,6 +22,7 @@ class Recorder {
   Result<> add_step(const Step& step);
   Result<> add_frame(StoredFrame frame);
   Result<> add_event(const Event& event);
+  Result<> add_probe_move(const ProbeMove& move);
   Result<> add_act(const SeedAct& act);
   Result<> add_dose(const RecordedScore& dose);
 
@@ -38,6 +39,7 @@ class Recorder {
   std::vector<Step> steps_;           ///< not yet written
   std::vector<StoredFrame> frames_;   ///< not yet written
   std::vector<Event> events_;         ///< not yet written
+  std::vector<ProbeMove> moves_;      ///< not yet written
   std::vector<SeedAct> acts_;         ///< not yet written
   std::vector<RecordedScore> doses_;  ///< not yet written
   std::optional<Error> error_;        ///< first failure of the thread

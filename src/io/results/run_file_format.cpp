@@ -4,6 +4,7 @@
 #include "model/digest.hpp"
 #include "row_check.hpp"
 
+#include <cmath>
 #include <cstddef>
 
 namespace stylet::results {
@@ -43,10 +44,17 @@ std::uint32_t check_of(const EventRow& r) {
   return RowCheck().numbers(r.kind, r.time_s, r.depth_mm, r.force_N, r.region).value();
 }
 
+std::uint32_t check_of(const ProbeRow& r) {
+  return RowCheck()
+      .numbers(r.time_s, r.depth_mm, r.lift_mm, r.tilt_deg, r.roll_deg, r.diameter_mm, r.balloon_mm)
+      .value();
+}
+
 std::uint32_t check_of(const EndRow& r, int version) {
   RowCheck check;
   check.numbers(r.steps, r.frames, r.events, r.summary_bytes, r.summary_check);
   if (version >= kFirstWithSeeds) check.numbers(r.acts, r.doses);
+  if (version >= kFirstWithProbe) check.numbers(r.probe_moves);
   return check.value();
 }
 
@@ -210,6 +218,44 @@ h5::Handle event_row_type() {
   return type;
 }
 
+ProbeRow to_row(const ProbeMove& move) {
+  ProbeRow row;
+  row.time_s = move.time_s;
+  row.depth_mm = move.probe.depth_mm.value_or(kMissing);
+  row.lift_mm = move.probe.lift_mm;
+  row.tilt_deg = move.probe.tilt_deg;
+  row.roll_deg = move.probe.roll_deg;
+  row.diameter_mm = move.probe.diameter_mm;
+  row.balloon_mm = move.probe.balloon_mm;
+  row.check = check_of(row);
+  return row;
+}
+
+ProbeMove from_row(const ProbeRow& row, const ProbeSettings& planned) {
+  ProbeMove move{row.time_s, planned};
+  move.probe.depth_mm.reset();
+  if (!std::isnan(row.depth_mm)) move.probe.depth_mm = row.depth_mm;
+  move.probe.lift_mm = row.lift_mm;
+  move.probe.tilt_deg = row.tilt_deg;
+  move.probe.roll_deg = row.roll_deg;
+  move.probe.diameter_mm = row.diameter_mm;
+  move.probe.balloon_mm = row.balloon_mm;
+  return move;
+}
+
+h5::Handle probe_row_type() {
+  h5::Handle type = h5::compound_type(sizeof(ProbeRow));
+  h5::insert_member(type, "time_s", offsetof(ProbeRow, time_s), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "depth_mm", offsetof(ProbeRow, depth_mm), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "lift_mm", offsetof(ProbeRow, lift_mm), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "tilt_deg", offsetof(ProbeRow, tilt_deg), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "roll_deg", offsetof(ProbeRow, roll_deg), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "diameter_mm", offsetof(ProbeRow, diameter_mm), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "balloon_mm", offsetof(ProbeRow, balloon_mm), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "check", offsetof(ProbeRow, check), H5T_NATIVE_UINT32);
+  return type;
+}
+
 h5::Handle end_row_type() {
   h5::Handle type = h5::compound_type(sizeof(EndRow));
   h5::insert_member(type, "steps", offsetof(EndRow, steps), H5T_NATIVE_INT64);
@@ -219,6 +265,7 @@ h5::Handle end_row_type() {
   h5::insert_member(type, "summary_check", offsetof(EndRow, summary_check), H5T_NATIVE_UINT32);
   h5::insert_member(type, "acts", offsetof(EndRow, acts), H5T_NATIVE_INT64);
   h5::insert_member(type, "doses", offsetof(EndRow, doses), H5T_NATIVE_INT64);
+  h5::insert_member(type, "probe_moves", offsetof(EndRow, probe_moves), H5T_NATIVE_INT64);
   h5::insert_member(type, "check", offsetof(EndRow, check), H5T_NATIVE_UINT32);
   return type;
 }

@@ -3,6 +3,7 @@
 
 #include "h5.hpp"
 #include "stylet/geom/tet_mesh.hpp"
+#include "stylet/sim/probe_move.hpp"
 #include "stylet/sim/recording.hpp"
 
 #include <array>
@@ -13,9 +14,10 @@
 /// The format of run.h5 (docs/results.md): row types shared by its writer and its reader.
 namespace stylet::results {
 
-inline constexpr int kRunFileVersion = 5;
+inline constexpr int kRunFileVersion = 6;
 inline constexpr int kFirstWithChecks = 4;  ///< first version of the format with checks
 inline constexpr int kFirstWithSeeds = 5;   ///< first version of the format that may have the seeds of an implant
+inline constexpr int kFirstWithProbe = 6;   ///< first version of the format with the moves of a probe
 inline constexpr const char* kRunFileFormat = "stylet-run";
 inline constexpr const char* kImplantFileFormat = "stylet-implant";  ///< of the run.h5 of an implant
 /// Fill value of rows that have not reached the disk.
@@ -82,12 +84,27 @@ EventRow to_row(const Event& event);
 Event from_row(const EventRow& row);
 h5::Handle event_row_type();
 
+/// A row of /probe: where the stepper holds the probe from a moment on (ProbeSettings).
+struct ProbeRow {
+  double time_s = kMissing;
+  double depth_mm = kMissing;  ///< NaN: the middle of the gland
+  double lift_mm = 0.0, tilt_deg = 0.0, roll_deg = 0.0;
+  double diameter_mm = 0.0, balloon_mm = 0.0;
+  std::uint32_t check = 0;
+};
+std::uint32_t check_of(const ProbeRow& row);
+ProbeRow to_row(const ProbeMove& move);
+/// @param planned the probe of the scenario, which has the settings that are not recorded
+ProbeMove from_row(const ProbeRow& row, const ProbeSettings& planned);
+h5::Handle probe_row_type();
+
 /// The row of /end, which the writer adds when it closes the file: the numbers of rows.
 struct EndRow {
   std::int64_t steps = 0, frames = 0, events = 0;
   std::int64_t summary_bytes = 0;
   std::uint32_t summary_check = 0;   ///< CRC-32 of /summary_json
   std::int64_t acts = 0, doses = 0;  ///< of /implant; files before version 5 do not have them
+  std::int64_t probe_moves = 0;      ///< files before version 6 do not have it
   std::uint32_t check = 0;
 };
 /// @param version of the file's format

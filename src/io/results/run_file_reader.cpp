@@ -3,6 +3,7 @@
 #include "detail/input_file.hpp"
 #include "stored_run.hpp"
 #include "stylet/io/recording_io.hpp"
+#include "stylet/io/scenario_io.hpp"
 #include "summary_json.hpp"
 
 #include <algorithm>
@@ -194,6 +195,14 @@ RunRecording checked(StoredRun run, const fs::path& path) {
     const std::int8_t kind = run.events[k].kind;
     demand(kind >= 0 && kind <= static_cast<std::int8_t>(EventKind::grazed), "/events: kind");
     out.events.push_back(from_row(run.events[k]));
+  }
+  const std::size_t moves = rows_of(
+      run.probe_moves.size(), [&](std::size_t k) { return run.probe_moves[k].check == check_of(run.probe_moves[k]); },
+      said(&EndRow::probe_moves), "/probe");
+  if (moves > 0) {
+    const auto scenario = parse_scenario(run.info.scenario_text, path);
+    const ProbeSettings planned = scenario ? scenario->probe : ProbeSettings{};
+    for (std::size_t k = 0; k < moves; ++k) out.probe_moves.push_back(from_row(run.probe_moves[k], planned));
   }
   out.implant = implant_of(run.seeds, end);
   if (const std::string summary = summary_of(run, end); !summary.empty()) {

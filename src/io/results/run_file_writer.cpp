@@ -94,11 +94,13 @@ Result<RunFileWriter> RunFileWriter::create(const fs::path& path, const RunInfo&
     w.frame_type_ = frame_row_type();
     w.contact_type_ = contact_row_type();
     w.event_type_ = event_row_type();
+    w.probe_type_ = probe_row_type();
     w.end_type_ = end_row_type();
     const StepRow no_step;
     const FrameRow no_frame;
     const ContactRow no_contact;
     const EventRow no_event;
+    const ProbeRow no_move;
     const EndRow no_end;
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const std::array<hsize_t, 2> per_node{mesh.nodes.size(), 3};
@@ -110,6 +112,7 @@ Result<RunFileWriter> RunFileWriter::create(const fs::path& path, const RunInfo&
     w.needle_ = h5::growing_dataset(frames, "needle_mm", H5T_NATIVE_DOUBLE, point, kPointChunk, &kMissing);
     w.contacts_ = h5::growing_dataset(frames, "contacts", w.contact_type_, {}, kPointChunk, &no_contact);
     w.events_ = h5::growing_dataset(w.file_, "events", w.event_type_, {}, kTableChunk, &no_event);
+    w.probe_ = h5::growing_dataset(w.file_, "probe", w.probe_type_, {}, kTableChunk, &no_move);
     w.summary_ = h5::growing_dataset(w.file_, "summary_json", H5T_NATIVE_UINT8, {}, kTextChunk, nullptr);
     w.end_ = h5::growing_dataset(w.file_, "end", w.end_type_, {}, 1, &no_end);
     if (plan != nullptr) w.seeds_.emplace(w.file_, *plan);
@@ -169,6 +172,15 @@ Result<> RunFileWriter::append_events(std::span<const Event> events) {
   });
 }
 
+Result<> RunFileWriter::append_probe_moves(std::span<const ProbeMove> moves) {
+  std::vector<ProbeRow> rows;
+  for (const ProbeMove& move : moves) rows.push_back(to_row(move));
+  return guarded([&] {
+    h5::append_rows(probe_, probe_type_, rows.size(), rows.data());
+    written_.probe_moves += static_cast<std::int64_t>(rows.size());
+  });
+}
+
 Result<> RunFileWriter::append_seeds(std::span<const SeedAct> acts, std::span<const RecordedScore> doses) {
   if (!seeds_) return Ok{};
   return guarded([&] {
@@ -203,11 +215,12 @@ Result<> RunFileWriter::close() {
   Result<> closed = guarded([&] {
     bool good = true;
     for (h5::Handle* data :
-         {&steps_, &frame_table_, &displacement_, &needle_, &contacts_, &events_, &summary_, &end_}) {
+         {&steps_, &frame_table_, &displacement_, &needle_, &contacts_, &events_, &probe_, &summary_, &end_}) {
       good = data->reset() && good;
     }
     if (seeds_) good = seeds_->close() && good;
-    for (h5::Handle* type : {&step_type_, &frame_type_, &contact_type_, &event_type_, &end_type_}) type->reset();
+    for (h5::Handle* type : {&step_type_, &frame_type_, &contact_type_, &event_type_, &probe_type_, &end_type_})
+      type->reset();
     if (!file_.reset() || !good) h5::fail("close");
   });
   return ended ? closed : ended;

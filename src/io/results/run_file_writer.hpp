@@ -36,6 +36,7 @@ class RunFileWriter {
   Result<> append_steps(std::span<const Step> steps);
   Result<> append_frame(const StoredFrame& stored);
   Result<> append_events(std::span<const Event> events);
+  Result<> append_probe_moves(std::span<const ProbeMove> moves);
   /// Writes acts and doses of the plan that was given to create(); without a plan, nothing.
   Result<> append_seeds(std::span<const SeedAct> acts, std::span<const RecordedScore> doses);
   /// Writes the summary, and those of its events that are not in the file yet. To be called once, at the end.
@@ -51,8 +52,8 @@ class RunFileWriter {
 
   std::filesystem::path path_;
   h5::Handle file_;
-  h5::Handle step_type_, frame_type_, contact_type_, event_type_, end_type_;
-  h5::Handle steps_, frame_table_, displacement_, needle_, contacts_, events_, summary_, end_;
+  h5::Handle step_type_, frame_type_, contact_type_, event_type_, probe_type_, end_type_;
+  h5::Handle steps_, frame_table_, displacement_, needle_, contacts_, events_, probe_, summary_, end_;
   std::optional<SeedTables> seeds_;
   std::int64_t needle_points_ = 0;
   std::int64_t contact_count_ = 0;

@@ -23,6 +23,7 @@ RunRecorder::~RunRecorder() = default;
 
 Result<> RunRecorder::add_step(const Step& step) { return parts_->recorder.add_step(step); }
 Result<> RunRecorder::add_event(const Event& event) { return parts_->recorder.add_event(event); }
+Result<> RunRecorder::add_probe_move(const ProbeMove& move) { return parts_->recorder.add_probe_move(move); }
 Result<> RunRecorder::add_act(const SeedAct& act) { return parts_->recorder.add_act(act); }
 Result<> RunRecorder::add_dose(const RecordedScore& dose) { return parts_->recorder.add_dose(dose); }
 Result<> RunRecorder::add_frame(const Frame& frame) {

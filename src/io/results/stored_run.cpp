@@ -104,6 +104,7 @@ StoredRun read_all(hid_t file) {
   read_frames(file, run);
   run.events = read_table<EventRow>(file, "events", event_row_type());
   if (run.format_version >= kFirstWithSeeds) run.seeds = read_seed_tables(file);
+  if (run.format_version >= kFirstWithProbe) run.probe_moves = read_table<ProbeRow>(file, "probe", probe_row_type());
   const auto summary = read_table<char>(file, "summary_json", H5T_NATIVE_UINT8);
   run.summary.assign(summary.begin(), summary.end());
   return run;

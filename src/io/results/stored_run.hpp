@@ -28,6 +28,7 @@ struct StoredRun {
   std::vector<Vec3> needle;
   std::vector<ContactRow> contacts;
   std::vector<EventRow> events;
+  std::vector<ProbeRow> probe_moves;
   StoredSeeds seeds;
   std::string summary;
   std::vector<EndRow> end;  ///< empty while the run goes on and if it was killed
@@ -44,7 +45,7 @@ void fields(auto& wire, StoredSeeds& s) {
 }
 void fields(auto& wire, StoredRun& r) {
   wire(r.format_version, r.start_digest, r.info, r.mesh, r.steps, r.frames, r.displacement, r.needle, r.contacts,
-       r.events, r.seeds, r.summary, r.end);
+       r.events, r.probe_moves, r.seeds, r.summary, r.end);
 }
 
 }  // namespace stylet::results
@@ -69,6 +70,8 @@ template <>
 inline constexpr bool is_plain<results::ContactRow> = true;
 template <>
 inline constexpr bool is_plain<results::EventRow> = true;
+template <>
+inline constexpr bool is_plain<results::ProbeRow> = true;
 template <>
 inline constexpr bool is_plain<results::EndRow> = true;
 template <>

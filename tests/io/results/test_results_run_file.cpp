@@ -2,7 +2,9 @@
 // Tests that run.h5 can be read, also while the writer is at work or after it was killed.
 #include "results/recorder.hpp"
 #include "results/run_file_format.hpp"
+#include "stylet/io/recorded_moments.hpp"
 #include "stylet/io/recording_io.hpp"
+#include "stylet/io/scenario_io.hpp"
 #include "summary_json.hpp"
 #include "synthetic_run.hpp"
 
@@ -515,6 +517,47 @@ TEST(RunFile, of_a_live_session_holds_the_seeds_of_its_implant) {
   }
 }
 
+TEST(RunFile, of_a_live_session_holds_the_way_of_the_probe) {
+  auto run = synthetic_run({.cells = {4, 4, 5}, .step_s = 0.05, .frames = 4});
+  Scenario scenario;
+  scenario.name = "probed";
+  scenario.patient.source = "/patient.json";
+  scenario.insertions.resize(1);
+  scenario.insertions[0].hole = "D4";
+  scenario.probe.kind = ProbeKind::endfire;
+  scenario.probe.in_contours = true;
+  run.info.scenario_text = to_toml(scenario);
+  ProbeSettings probe = scenario.probe;
+  probe.lift_mm = 3.0;
+  ProbeSettings then = probe;
+  then.depth_mm = -12.5;
+  then.tilt_deg = 4.0;
+  then.roll_deg = -30.0;
+  then.diameter_mm = 22.0;
+  then.balloon_mm = 5.0;
+  const std::vector<ProbeMove> moves{{0.0, probe}, {1.5, then}};
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "run.h5";
+  for (const bool finished : {true, false}) {
+    auto writer = RunFileWriter::create(path, run.info, run.mesh);
+    ASSERT_TRUE(writer.ok()) << writer.error().message();
+    ASSERT_TRUE(writer->append_probe_moves(moves).ok());
+    ASSERT_TRUE((finished ? writer->close() : writer->flush()).ok());
+    const auto back = read_recording(path);
+    ASSERT_TRUE(back.ok()) << back.error().message();
+    ASSERT_EQ(back->probe_moves.size(), 2u);
+    EXPECT_EQ(back->probe_moves[0].time_s, 0.0);
+    EXPECT_EQ(back->probe_moves[0].probe, probe) << "without a depth: the middle of the gland";
+    EXPECT_EQ(back->probe_moves[1].time_s, 1.5);
+    EXPECT_EQ(back->probe_moves[1].probe, then);
+    const RecordedMoments at(*back);
+    EXPECT_EQ(at.probe_at(0.0), probe);
+    EXPECT_EQ(at.probe_at(1.49), probe) << "a place holds until the next one";
+    EXPECT_EQ(at.probe_at(1.5), then);
+    EXPECT_EQ(at.probe_at(99.0), then);
+  }
+}
+
 TEST(RunFile, with_a_changed_seed_is_refused) {
   const auto run = synthetic_run({.cells = {4, 4, 5}, .step_s = 0.05, .frames = 4});
   const TemporaryFolder folder;
@@ -531,6 +574,28 @@ TEST(RunFile, with_a_changed_seed_is_refused) {
   const auto back = read_recording(path);
   ASSERT_FALSE(back.ok());
   EXPECT_NE(back.error().message().find("/implant/acts"), std::string::npos) << back.error().message();
+}
+
+TEST(RunFile, with_a_changed_place_of_the_probe_is_refused) {
+  const auto run = synthetic_run({.cells = {4, 4, 5}, .step_s = 0.05, .frames = 4});
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "run.h5";
+  {
+    auto writer = RunFileWriter::create(path, run.info, run.mesh);
+    ASSERT_TRUE(writer.ok()) << writer.error().message();
+    ASSERT_TRUE(writer->append_probe_moves(std::vector<ProbeMove>(2)).ok());
+    ASSERT_TRUE(writer->close().ok());
+  }
+  {
+    const h5::Handle file(h5::check(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "open"), H5Fclose);
+    const h5::Handle column = h5::compound_type(sizeof(double));
+    h5::insert_member(column, "lift_mm", 0, H5T_NATIVE_DOUBLE);
+    const std::array<double, 1> higher{1.0};
+    h5::write_rows(h5::dataset(file, "probe"), column, 1, 1, higher.data());
+  }
+  const auto back = read_recording(path);
+  ASSERT_FALSE(back.ok());
+  EXPECT_NE(back.error().message().find("/probe"), std::string::npos) << back.error().message();
 }
 
 TEST(RunFile, of_the_version_before_seeds_is_read_with_its_checks) {
@@ -555,12 +620,14 @@ TEST(RunFile, of_the_version_before_seeds_is_read_with_its_checks) {
       h5::check(H5Tinsert(then, name, H5Tget_member_offset(now, k), type), "insert");
     }
     h5::check(H5Ldelete(file, "end", H5P_DEFAULT), "delete");
+    h5::check(H5Ldelete(file, "probe", H5P_DEFAULT), "delete");
     const h5::Handle end = h5::growing_dataset(file, "end", then, {}, 1, nullptr);
     h5::append_rows(end, then, 1, &row);
   }
   const auto back = read_recording(path);
   ASSERT_TRUE(back.ok()) << back.error().message();
   EXPECT_FALSE(back->implant);
+  EXPECT_TRUE(back->probe_moves.empty());
   EXPECT_EQ(back->steps.size(), expected->steps.size());
 }
 
