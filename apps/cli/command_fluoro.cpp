@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command.hpp"
 #include "output_path.hpp"
+#include "probe_text.hpp"
 #include "validators.hpp"
 
 #include "stylet/imaging/fluoroscope.hpp"
@@ -90,7 +91,7 @@ Result<> run_fluoro(const FluoroArguments& arguments, Console& console) {
   if (!arguments.seeds.empty()) {
     if (auto added = add_planned_seeds(*imaged, arguments.seeds); !added) return added;
   }
-  const Moment& moment = imaged->moment;
+  const Moment moment = pressed(*imaged, imaged->scenario.probe);
   const FluoroscopySettings& settings = imaged->scenario.fluoroscopy;
   const auto result = exposed(imaged->mesh, moment, settings, arguments.second_keV);
   if (!result) return result.error();
@@ -109,6 +110,7 @@ Result<> run_fluoro(const FluoroArguments& arguments, Console& console) {
       "{}: {} × {} pixels of {:.3f} mm at the gland, {} needle{}, {} seed{}; simulated, not a medical device",
       path.string(), picture.columns, picture.rows, picture.mm_per_pixel, moment.needles.size(),
       moment.needles.size() == 1 ? "" : "s", moment.seeds.size(), moment.seeds.size() == 1 ? "" : "s"));
+  const Json probe = say_probe(*imaged, console);
   Json json{{"file", path.string()},
             {"case", arguments.file},
             {"time_s", moment.time_s},
@@ -121,6 +123,7 @@ Result<> run_fluoro(const FluoroArguments& arguments, Console& console) {
             {"nodes", imaged->mesh.node_count()},
             {"needles", moment.needles.size()},
             {"seeds", moment.seeds.size()},
+            {"probe", probe},
             {"cpu_ms", result->cpu_ms},
             {"notice", kPictureNotice}};
   return console.write_json(json);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command.hpp"
 #include "output_path.hpp"
+#include "probe_text.hpp"
 #include "validators.hpp"
 
 #include "stylet/geom/centroid.hpp"
@@ -132,15 +133,15 @@ Result<std::vector<MadePicture>> make(const ImageArguments& arguments, const Ima
   if (!scanner) return scanner.error();
   ProbeSettings probe = patient.scenario.probe;
   probe.kind = kind;
-  if (const auto z = given(arguments.z_mm)) probe.depth_mm = *z;
   std::vector<double> planes{probe.depth_mm.value_or(seat->gland_mm)};
   if (arguments.all) planes = planes_through(patient, probe.step_mm);
   ScanConversion conversion(arguments.pixel_mm);
   std::vector<MadePicture> made;
   for (const double z : planes) {
     probe.depth_mm = z;
+    const Moment moment = pressed(patient, probe);
     const double before = measure::thread_cpu_s();
-    const PolarPicture polar = scanner->scan(patient.moment, kind, probe_place(probe, *seat), array);
+    const PolarPicture polar = scanner->scan(moment, kind, probe_place(probe, *seat), array);
     const double cpu_ms = 1e3 * (measure::thread_cpu_s() - before);
     made.push_back({conversion.convert(polar), polar.beams, z, cpu_ms});
   }
@@ -149,8 +150,10 @@ Result<std::vector<MadePicture>> make(const ImageArguments& arguments, const Ima
 
 Result<> run_image(const ImageArguments& arguments, Console& console) {
   if (Result<> checked = check_arguments(arguments); !checked) return checked;
+  std::vector<std::string> settings_of_probe = arguments.settings;
+  if (const auto z = given(arguments.z_mm)) settings_of_probe.push_back(fmt::format("probe.depth_mm={}", *z));
   const Result<ImagedPatient> patient =
-      imaged_patient(arguments.file, arguments.settings, given(arguments.time_s), console.progress());
+      imaged_patient(arguments.file, settings_of_probe, given(arguments.time_s), console.progress());
   if (!patient) return patient.error();
   UltrasoundArray array = patient->scenario.ultrasound.array;
   if (!arguments.array.empty())
@@ -197,6 +200,7 @@ Result<> run_image(const ImageArguments& arguments, Console& console) {
   console.say(fmt::format("{} picture{} ({} array, {} lines of {} samples, {:.1f} ms each) → {}", made->size(),
                           made->size() == 1 ? "" : "s", name_of(array), settings.lines, settings.samples,
                           made->back().cpu_ms, pictures.back()["file"].get<std::string>()));
+  const Json probe = say_probe(*patient, console);
   console.say("The pictures are simulated. Not a medical device.");
   return console.write_json({{"notice", kPictureNotice},
                              {"array", name_of(array)},
@@ -206,6 +210,7 @@ Result<> run_image(const ImageArguments& arguments, Console& console) {
                              {"samples", settings.samples},
                              {"needles", patient->moment.needles.size()},
                              {"seeds", patient->moment.seeds.size()},
+                             {"probe", probe},
                              {"pictures", pictures}});
 }
 

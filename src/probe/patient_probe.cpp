@@ -78,19 +78,23 @@ GlandForm PatientProbe::gland() const {
   return measure_.form(u);
 }
 
+ProbeReport report_probe(PatientProbe& probe, const ProbeSettings& settings, double creep) {
+  ProbeReport report;
+  report.settings = settings;
+  report.place = probe.place(settings);
+  report.press = probe.press(settings);
+  report.lasting_force_N = report.press.force_N / creep;
+  report.gland = probe.gland();
+  report.wall_points = probe.wall().count();
+  report.prepare_s = probe.wall().seconds;
+  report.megabytes = probe.wall().megabytes();
+  return report;
+}
+
 Result<ProbeReport> report_probe(const Model& model, const std::string& where, const Progress& progress) {
   auto probe = PatientProbe::prepare(model, where, progress);
   if (!probe) return probe.error();
-  ProbeReport report;
-  report.settings = model.scenario().probe;
-  report.place = probe->place(report.settings);
-  report.press = probe->press(report.settings);
-  report.lasting_force_N = report.press.force_N / creep_of(model.scenario());
-  report.gland = probe->gland();
-  report.wall_points = probe->wall().count();
-  report.prepare_s = probe->wall().seconds;
-  report.megabytes = probe->wall().megabytes();
-  return report;
+  return report_probe(*probe, model.scenario().probe, creep_of(model.scenario()));
 }
 
 std::vector<ProbeFact> probe_facts(const ProbeReport& report) {

@@ -3,7 +3,6 @@
 
 #include "needle_choice.hpp"
 #include "planning.hpp"
-#include "room_for_probe.hpp"
 #include "stylet/core/nearest_name.hpp"
 #include "stylet/coupling/near_field/needle_kernel.hpp"
 #include "stylet/coupling/paper/dense_inverse.hpp"
@@ -13,6 +12,7 @@
 #include "stylet/needle/make_needle.hpp"
 #include "stylet/sim/cutting_lag.hpp"
 #include "stylet/sim/hole_map.hpp"
+#include "tissue_choice.hpp"
 
 #include <fmt/format.h>
 
@@ -30,8 +30,6 @@ constexpr double kTentingMax_mm = 20.0;  ///< largest plausible tenting
 constexpr double kLagMax_mm = 5.0;       ///< largest plausible cutting lag
 /// Compliance is precomputed this far beyond the planned depth, because the tip pushes tissue ahead of it.
 constexpr double kBeyond_mm = 15.0;
-/// Largest number of nodes for which tissue.element = "auto" chooses elements with averaged pressure.
-constexpr Index kMostAveraged = 45000;
 
 CouplingSettings coupling_settings(const Scenario& s) {
   CouplingSettings c;
@@ -61,16 +59,6 @@ CouplingSettings coupling_settings(const Scenario& s) {
   c.tolerance = s.coupling.tolerance;
   c.axial_compliance_mm_per_N = axial_compliance(s.needle);
   return c;
-}
-
-/// The element of the tissue. The methods of Goksel et al. 2005 are there for comparison, so all of them use linear
-/// tetrahedra, which two of them need. Averaged pressure couples two rings of nodes; on meshes above some size its
-/// factor does not fit into memory, and locking is small there (docs/theory/tissue.md).
-Element element_of(const Scenario& s, Index nodes) {
-  const bool of_the_paper = s.coupling.method != CouplingSettings::Method::near_field ||
-                            s.coupling.engine != CouplingSettings::Engine::condensed;
-  const bool p1 = of_the_paper || nodes > kMostAveraged;
-  return element_named(word(s.tissue_model.element)).value_or(p1 ? Element::p1 : Element::nodal_pressure);
 }
 
 /// Number of point loads of a needle with `capacity` shaft contacts: the tip and a guide add one each.
@@ -260,16 +248,11 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
   model->coupling_ = coupling_settings(scenario);
   model->target_ = find_target(mesh);
 
-  std::vector<Material> materials;
+  model->tissue_parameters_ = tissue_parameters(scenario, mesh);
+  std::vector<Material> materials = materials_of(model->tissue_parameters_);
   for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
     const std::string& name = mesh.regions[r];
-    TissueParameters p = tissue_of(scenario, name);
-    if (name == "rectum" && scenario.probe.kind != ProbeKind::none && mesh.region_index("rectal_lumen") < 0 &&
-        scenario.tissue.find(name) == scenario.tissue.end()) {
-      make_room_for_probe(p);  // wall and filling are one region
-    }
-    model->tissue_parameters_.push_back(p);
-    materials.push_back({p.young_kPa * 1e-3, p.poisson});
+    const TissueParameters& p = model->tissue_parameters_[r];
     RegionLaws laws;
     laws.cutting_N = p.cutting_N;
     laws.puncture_N = p.puncture_N;

@@ -71,6 +71,22 @@ class Image(InFolder):
         self.assertEqual((earlier["time_s"], earlier["lines"]), (2.0, 64))
         self.refuse("image", self.recording, "--time", "1000", "-o", "late.png", says=["--time", "1000 s", "ends at"])
 
+    def test_probe_presses_and_the_command_says_how(self):
+        lifted = ("--set", 'probe.kind="biplane"', "--set", "probe.lift_mm=8")
+        said = self.succeed("image", self.recording, *lifted, "-o", "pressed.mha").stdout
+        self.assertIn("gland under the probe: ", said)
+        self.assertIn("to anterior", said)
+        for command in ("image", "fluoro"):
+            probe = self.json_of(command, self.recording, *lifted, "-o", command + ".mha")["probe"]
+            self.assertEqual(probe["lift_mm"], 8)
+            self.assertGreater(probe["force_N"][1], 1.0, "the tissue pushes the probe back, to posterior")
+            self.assertLess(probe["gland"]["shift_mm"][1], -0.3, "the gland goes to anterior")
+        self.assertEqual((self.folder / "image.mha").read_bytes(), (self.folder / "pressed.mha").read_bytes())
+        drawn = self.json_of("image", self.recording, *lifted, "--set", "probe.in_contours=true", "-o", "drawn.mha")
+        self.assertIsNone(drawn["probe"], "contours that were drawn with the probe there are not moved")
+        self.assertNotEqual((self.folder / "drawn.mha").read_bytes(), (self.folder / "pressed.mha").read_bytes())
+        self.assertIsNone(self.json_of("image", self.recording, "-o", "none.mha")["probe"])
+
     def test_bad_input_is_refused(self):
         self.refuse("image", DEMO, "-o", "us.jpg", says=["us.jpg", ".png or .mha"])
         self.refuse("image", DEMO, "--time", "1", "-o", "us.png", says=["--time", "scenario"])

@@ -63,6 +63,9 @@ struct ProbeReport {
   double megabytes = 0.0;
 };
 
+/// Presses with a probe where the stepper holds it and measures what it does.
+/// @param creep by which the moduli fall while a probe stays (creep_of())
+ProbeReport report_probe(PatientProbe& probe, const ProbeSettings& settings, double creep);
 /// Puts the probe of a model's scenario in and measures what it does. Errors: as PatientProbe::prepare().
 Result<ProbeReport> report_probe(const Model& model, const std::string& where, const Progress& progress = {});
 
