@@ -59,7 +59,8 @@ struct ImageDesk::Parts {
   std::condition_variable_any wake;
   // Guarded by the mutex.
   std::optional<ImageSubject> patient;  ///< taken by the thread
-  Scenario tables;                      ///< as set by the pages
+  Scenario tables;                      ///< as set by the pages; in a replay with the recorded place of the probe
+  bool is_probe_moved = false;          ///< by a page, during a replay
   ShownImage shown = ShownImage::none;
   bool is_changed = false;  ///< the tables or the kind of picture
   std::variant<std::monostate, LoopState, Moment> newest;
@@ -68,6 +69,10 @@ struct ImageDesk::Parts {
 
   // Used by the caller's thread.
   Scenario planned;  ///< of the open patient, as its file has it
+  struct SetAside {
+    Scenario tables, planned;
+  };
+  std::optional<SetAside> set_aside;  ///< of the live patient during a replay
 
   std::jthread thread;  ///< last member, so that it starts when the others exist
 
@@ -102,7 +107,7 @@ void ImageDesk::Parts::run(const std::stop_token& stop) {
     {
       const std::lock_guard lock(mutex);
       stage.clear();
-      problem = image ? "" : image.error().what + ". " + image.error().cure + ".";
+      problem = image ? maker.remark() : image.error().what + ". " + image.error().cure + ".";
       made = image ? *std::move(image) : nullptr;
     }
     std::unique_lock lock(mutex);
@@ -115,6 +120,13 @@ ImageDesk::~ImageDesk() = default;
 
 void ImageDesk::open(ImageSubject patient) {
   const std::lock_guard lock(parts_->mutex);
+  parts_->is_probe_moved = false;
+  if (patient.is_recorded && !parts_->set_aside) parts_->set_aside = {parts_->tables, parts_->planned};
+  if (!patient.is_recorded && parts_->set_aside) {
+    parts_->tables = std::move(parts_->set_aside->tables);
+    parts_->planned = std::move(parts_->set_aside->planned);
+    parts_->set_aside.reset();
+  }
   // Another needle in the same patient leaves the probe where it is.
   if (!has_same_tables(parts_->planned, patient.scenario)) take_tables(parts_->tables, patient.scenario);
   parts_->planned = patient.scenario;
@@ -138,6 +150,7 @@ Result<> ImageDesk::set(const std::string& key, double value) {
   const std::lock_guard lock(parts_->mutex);
   const ScenarioValue as_number{.type = ScenarioValue::Type::number, .number = value};
   if (auto done = set_scenario_key(parts_->tables, key, as_number, key); !done) return done;
+  parts_->is_probe_moved = parts_->is_probe_moved || key.starts_with("probe.");
   parts_->is_changed = true;
   parts_->wake.notify_all();
   return Ok{};
@@ -155,10 +168,16 @@ void ImageDesk::take(const Snapshot& snapshot, std::vector<ShownSeed> seeds) {
   parts_->wake.notify_all();
 }
 
-void ImageDesk::take(Moment moment) {
+void ImageDesk::take(Moment moment, const std::optional<ProbeSettings>& probe) {
   const std::lock_guard lock(parts_->mutex);
+  if (probe && !parts_->is_probe_moved) parts_->tables.probe = *probe;
   parts_->newest = std::move(moment);
   parts_->wake.notify_all();
+}
+
+ProbeSettings ImageDesk::probe() const {
+  const std::lock_guard lock(parts_->mutex);
+  return parts_->tables.probe;
 }
 
 std::shared_ptr<const LiveImage> ImageDesk::news() {

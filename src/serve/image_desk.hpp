@@ -23,6 +23,7 @@ struct ImageSubject {
   Scenario scenario;                            ///< with the tables of probe, ultrasound and X-ray
   std::vector<int> gland;                       ///< regions of the target
   std::shared_ptr<const DisplayField> field{};  ///< of the open model; null in a replay
+  bool is_recorded = false;                     ///< the patient of a replay
 };
 
 /// Makes ultrasound and X-ray pictures of the newest moment, one after the other, in a thread of its own. Moments that
@@ -32,7 +33,8 @@ class ImageDesk {
   ImageDesk();
   ~ImageDesk();
 
-  /// Takes up another patient; the settings of the probe, scanner and C-arm become those of its scenario.
+  /// Takes up another patient; the settings of the probe, scanner and C-arm become those of its scenario. After a
+  /// replay, those from before it are back.
   void open(ImageSubject patient);
   /// The kind of picture to make; `none` rests.
   void show(ShownImage shown);
@@ -43,11 +45,14 @@ class ImageDesk {
   /// The newest moment of the loop. @param seeds where they are now
   void take(const Snapshot& snapshot, std::vector<ShownSeed> seeds);
   /// The newest moment of a replay.
-  void take(Moment moment);
+  /// @param probe where it was then, which holds until a page moves the probe; empty: there was none
+  void take(Moment moment, const std::optional<ProbeSettings>& probe);
+  /// Where the probe is, as set by the pages.
+  [[nodiscard]] ProbeSettings probe() const;
 
   /// The newest picture; null if there is none since the last call.
   std::shared_ptr<const LiveImage> news();
-  /// Why no picture can be made of this patient; empty: it can.
+  /// Why no picture can be made of this patient, or why its probe moves nothing in the pictures; empty: all is well.
   [[nodiscard]] std::string problem() const;
   /// What is being prepared; empty: nothing.
   [[nodiscard]] std::string stage() const;

@@ -2,8 +2,8 @@
 #include "image_maker.hpp"
 
 #include "stylet/imaging/fluoroscope.hpp"
+#include "stylet/imaging/pressing_probe.hpp"
 #include "stylet/imaging/ultrasound_scanner.hpp"
-#include "stylet/probe/patient_probe.hpp"
 #include "stylet/sim/display_near_field.hpp"
 
 #include <nlohmann/json.hpp>
@@ -86,41 +86,14 @@ class LoopMotion {
   std::vector<TissueParameters> tissue_;  ///< by region
 };
 
+/// Why a recorded patient is shown without the probe's motion.
+std::string no_press(const Error& error) { return "The probe does not press: " + error.what + ". " + error.cure + "."; }
+
 bool is_same_patient(const ImageSubject& a, const ImageSubject& b) {
   return a.mesh && b.mesh && a.gland == b.gland && a.mesh->nodes == b.mesh->nodes &&
-         a.mesh->tet_region == b.mesh->tet_region && a.scenario.tissue == b.scenario.tissue;
+         a.mesh->tet_region == b.mesh->tet_region && a.scenario.tissue == b.scenario.tissue &&
+         a.scenario.probe == b.scenario.probe;
 }
-
-/// A probe that presses, with the model that it belongs to.
-struct PressingProbe {
-  std::shared_ptr<const Model> model;
-  PatientProbe probe;
-  Eigen::Matrix3Xf moved;  ///< (3 × nodes) [mm] displacement by the probe
-
-  /// Presses, and moves tissue, needles and seeds of a moment. @return the force on the probe [N]
-  double press(const ProbeSettings& settings, Moment& moment) {
-    const double force = probe.press(settings).force_N.norm();
-    probe.contact().displacement(moved);
-    for (ShownNeedle& needle : moment.needles) {
-      for (Vec3& x : needle.centreline_mm) x += at(x);
-    }
-    for (ShownSeed& seed : moment.seeds) seed.centre_mm += at(seed.centre_mm);
-    moment.displacement += moved;
-    return force;
-  }
-
- private:
-  /// Displacement by the probe near a place; zero outside of the patient.
-  [[nodiscard]] Vec3 at(const Vec3& x) const {
-    const auto found = model->locator().find(x);
-    if (!found) return Vec3::Zero();
-    const auto& corners = model->mesh().tets[static_cast<std::size_t>(found->tet)];
-    Vec3 sum = Vec3::Zero();
-    for (std::size_t k = 0; k < corners.size(); ++k)
-      sum += found->weights[static_cast<Eigen::Index>(k)] * moved.col(corners[k]).cast<double>();
-    return sum;
-  }
-};
 
 }  // namespace
 
@@ -133,9 +106,12 @@ struct ImageMaker::Parts {
   std::optional<UltrasoundScanner> scanner;
   std::unique_ptr<Fluoroscope> fluoroscope;
   std::optional<ProbeSeat> seat;
-  std::optional<PressingProbe> pressing;  ///< of a scenario with a probe, while the model is there
+  std::optional<PressingProbe> pressing;  ///< of a scenario with a probe, of a live patient while the model is there
+  std::string remark;                     ///< why the probe of a replay does not press
 
-  [[nodiscard]] bool may_press() const { return patient.scenario.probe.kind != ProbeKind::none && patient.field; }
+  [[nodiscard]] bool may_press() const {
+    return patient.scenario.probe.kind != ProbeKind::none && (patient.field || patient.is_recorded);
+  }
   [[nodiscard]] ImageJson probe_json(const ProbePlace& place, const std::optional<double>& force_N) const;
   Result<> prepare_probe(const std::function<void(const std::string&)>& tell);
   Result<> prepare_scanner(const std::function<void(const std::string&)>& tell);
@@ -146,6 +122,8 @@ struct ImageMaker::Parts {
 ImageMaker::ImageMaker() : parts_(std::make_unique<Parts>()) {}
 ImageMaker::~ImageMaker() = default;
 
+const std::string& ImageMaker::remark() const { return parts_->remark; }
+
 void ImageMaker::open(ImageSubject patient) {
   Parts& p = *parts_;
   p.scanner.reset();  // scanner and fluoroscope belong to one mesh object
@@ -154,6 +132,7 @@ void ImageMaker::open(ImageSubject patient) {
   if (!is_same_patient(p.patient, patient)) {
     p.seat.reset();
     p.pressing.reset();
+    p.remark.clear();
   }
   p.patient = std::move(patient);
   p.moment = moment_at_rest(*p.patient.mesh);
@@ -206,12 +185,18 @@ Result<> ImageMaker::Parts::prepare_probe(const std::function<void(const std::st
     if (!found) return found.error();
     seat = *found;
   }
-  if (pressing || !may_press()) return Ok{};
+  if (pressing || !may_press() || !remark.empty()) return Ok{};
   tell("The rectal wall under the probe is being prepared");
+  if (patient.is_recorded) {
+    auto made = PressingProbe::prepare(patient.scenario, *patient.mesh, patient.scenario.name);
+    if (made) pressing.emplace(std::move(*made));
+    if (!made) remark = no_press(made.error());
+    return Ok{};
+  }
   std::shared_ptr<const Model> model(patient.field, &patient.field->model());
-  auto made = PatientProbe::prepare(*model, patient.scenario.name);
+  auto made = PressingProbe::prepare(std::move(model), patient.scenario.name);
   if (!made) return made.error();
-  pressing.emplace(PressingProbe{model, std::move(*made), Eigen::Matrix3Xf::Zero(3, model->mesh().node_count())});
+  pressing.emplace(std::move(*made));
   return Ok{};
 }
 
@@ -235,7 +220,7 @@ Result<std::shared_ptr<const LiveImage>> ImageMaker::Parts::ultrasound() {
   const ProbePlace place = probe_place(tables.probe, *seat);
   Moment shown_moment = moment;
   std::optional<double> force_N;
-  if (pressing) force_N = pressing->press(tables.probe, shown_moment);
+  if (pressing) force_N = pressing->press(tables.probe, shown_moment).force_N.norm();
   const auto array = shown == ShownImage::sagittal ? UltrasoundArray::sagittal : UltrasoundArray::transverse;
   const PolarPicture picture = scanner->scan(shown_moment, kind, place, array);
   const UltrasoundBeams& beams = picture.beams;
@@ -272,7 +257,10 @@ Result<std::shared_ptr<const LiveImage>> ImageMaker::Parts::xray() {
   }
   Moment shown_moment = moment;
   ImageJson probe = nullptr;
-  if (pressing) probe = probe_json(probe_place(tables.probe, *seat), pressing->press(tables.probe, shown_moment));
+  if (pressing) {
+    const double force_N = pressing->press(tables.probe, shown_moment).force_N.norm();
+    probe = probe_json(probe_place(tables.probe, *seat), force_N);
+  }
   const GreyPicture& picture = fluoroscope->expose(shown_moment);
   auto image = std::make_shared<LiveImage>();
   image->rows = static_cast<std::uint32_t>(picture.rows);
@@ -294,7 +282,9 @@ Result<std::shared_ptr<const LiveImage>> ImageMaker::make(const std::function<vo
   if (!parts_->patient.mesh) return std::shared_ptr<const LiveImage>();
   const bool is_xray = parts_->shown == ShownImage::xray;
   if (!is_xray || parts_->may_press()) {
-    if (auto prepared = parts_->prepare_probe(tell); !prepared) return prepared.error();
+    const Result<> prepared = parts_->prepare_probe(tell);
+    if (!prepared && !(is_xray && parts_->patient.is_recorded)) return prepared.error();
+    if (!prepared) parts_->remark = no_press(prepared.error());
   }
   if (is_xray) return parts_->xray();
   if (auto prepared = parts_->prepare_scanner(tell); !prepared) return prepared.error();

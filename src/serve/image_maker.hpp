@@ -28,6 +28,8 @@ class ImageMaker {
   /// The picture of the last moment. @param tell is told what is being prepared, since that takes seconds
   /// Errors: the patient has no place for a probe.
   Result<std::shared_ptr<const LiveImage>> make(const std::function<void(const std::string&)>& tell);
+  /// Why the probe of a replay moves nothing in the picture, in a sentence; empty if it presses or if there is none.
+  [[nodiscard]] const std::string& remark() const;
 
  private:
   struct Parts;

@@ -124,6 +124,12 @@ void LiveRun::record_implant(const LiveImplant& implant, bool score_is_current) 
   }
 }
 
+void LiveRun::record_probe(const ProbeSettings& probe) {
+  if (!recorder_ || probe.kind == ProbeKind::none || probe == last_probe_) return;
+  record(recorder_->add_probe_move({time_s_, probe}));
+  last_probe_ = probe;
+}
+
 void LiveRun::pump(const std::function<void(const LiveEvent&)>& tell) {
   while (const std::size_t count = runner_->take_steps(step_room_)) {
     for (const Step& step : std::span(step_room_).first(count)) {

@@ -75,6 +75,8 @@ class LiveRun {
   [[nodiscard]] SeedFollower& seeds() { return seeds_; }
   /// Records what has changed of the implant since the last call (SeedJournal::news()), and the next picture.
   void record_implant(const LiveImplant& implant, bool score_is_current);
+  /// Records where the stepper holds the probe, if there is one and it has moved since the last call.
+  void record_probe(const ProbeSettings& probe);
   /// Records a frame of the next picture, although the last one was recorded a short time ago.
   void record_next_picture() { next_frame_s_ = 0.0; }
 
@@ -122,13 +124,14 @@ class LiveRun {
   std::vector<Step> unsent_;                ///< steps since the last picture
   std::vector<Step> curve_;                 ///< steps since the start, thinned
   double time_s_ = 0.0;
-  double frame_every_s_;             ///< least simulated time between recorded frames
-  double next_frame_s_ = 0.0;        ///< simulated time of the next recorded frame
-  std::optional<Frame> last_frame_;  ///< the last recorded frame
-  Pose last_base_;                   ///< base in last_frame_
-  double last_force_N_ = 0.0;        ///< axial force in last_frame_
-  double resting_until_s_ = 0.0;     ///< nothing has moved from last_frame_ until this simulated time
-  double picture_after_s_ = 0.0;     ///< wall-clock time after which the next displacement is computed for the page
+  double frame_every_s_;                     ///< least simulated time between recorded frames
+  double next_frame_s_ = 0.0;                ///< simulated time of the next recorded frame
+  std::optional<Frame> last_frame_;          ///< the last recorded frame
+  std::optional<ProbeSettings> last_probe_;  ///< that was recorded
+  Pose last_base_;                           ///< base in last_frame_
+  double last_force_N_ = 0.0;                ///< axial force in last_frame_
+  double resting_until_s_ = 0.0;             ///< nothing has moved from last_frame_ until this simulated time
+  double picture_after_s_ = 0.0;  ///< wall-clock time after which the next displacement is computed for the page
 };
 
 }  // namespace stylet::serve

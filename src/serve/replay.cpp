@@ -25,6 +25,7 @@ double Replay::duration_s() const {
   // While the needle of a recording that goes on is at rest, it gets no steps.
   if (recording_.implant && !recording_.implant->acts.empty())
     end = std::max(end, recording_.implant->acts.back().time_s);
+  if (!recording_.probe_moves.empty()) end = std::max(end, recording_.probe_moves.back().time_s);
   return end;
 }
 

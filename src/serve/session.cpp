@@ -518,7 +518,10 @@ void Session::Parts::open_images() {
     if (!scenario) return;  // the replay has begun, so its scenario was read
     moments = std::make_unique<RecordedMoments>(recording);
     // A copy of the mesh, since the replay may end while a picture of it is being made.
-    images.open({std::make_shared<const TetMesh>(recording.mesh), *std::move(scenario), recording.info.target_regions});
+    images.open({.mesh = std::make_shared<const TetMesh>(recording.mesh),
+                 .scenario = *std::move(scenario),
+                 .gland = recording.info.target_regions,
+                 .is_recorded = true});
     return;
   }
   if (!open.model) return;
@@ -539,11 +542,12 @@ std::vector<ShownSeed> Session::Parts::shown_seeds() {
   return shown;
 }
 
-/// Passes the newest moment on, if somebody looks at pictures of it.
+/// Records where the probe is, and passes the newest moment on if somebody looks at pictures of it.
 void Session::Parts::take_moment() {
+  if (live) live->record_probe(images.probe());
   if (images.shown() == ShownImage::none) return;
   if (replay) {
-    if (moments) images.take(moments->at(replay->time_s()));
+    if (moments) images.take(moments->at(replay->time_s()), moments->probe_at(replay->time_s()));
     return;
   }
   if (live) images.take(live->runner().snapshot(), shown_seeds());

@@ -31,6 +31,16 @@ serve::CaseSource case_with_rectum() {
           }};
 }
 
+serve::CaseSource case_with_probe() {
+  return {"with a probe", [](const Progress& progress) -> Result<serve::LoadedCase> {
+            Scenario scenario = hole_scenario();
+            scenario.probe.kind = ProbeKind::biplane;
+            auto model = Model::compile(scenario, patient_with_rectum(), "case.toml", {}, progress);
+            if (!model) return model.error();
+            return serve::LoadedCase{*model, {}};
+          }};
+}
+
 /// A page that holds the needle.
 struct Imaging {
   Serving serving;
@@ -112,4 +122,46 @@ TEST(LiveImages, show_the_needle_and_a_replay) {
   ASSERT_TRUE(page.until([&] { return page.images > live && page.image["time_s"].get<double>() > 0.0; }));
   page.command(R"({"do":"set","key":"fluoroscopy.angle_deg","value":35})");
   ASSERT_TRUE(page.until([&] { return page.image["angle_deg"] == 35.0; })) << "a replay can be looked at otherwise";
+}
+
+TEST(LiveImages, of_a_replay_have_the_probe_where_it_was_and_it_presses) {
+  Imaging at(case_with_probe());
+  LiveClient& page = *at.page;
+  const auto lift = [&](double mm) {
+    page.command(R"({"do":"set","key":"probe.lift_mm","value":)" + std::to_string(mm) + "}");
+    return page.until([&] { return page.images > 0 && page.image["probe"]["lift_mm"] == mm; });
+  };
+  page.command(R"({"do":"image","show":"transverse"})");
+  ASSERT_TRUE(lift(4.0));
+  page.hand(28.0F, 100.0F);
+  ASSERT_TRUE(page.until([&] { return page.depth_mm > 27.9F; }));
+  const double low_s = page.time_s;
+  ASSERT_TRUE(page.until([&] { return page.time_s > low_s + 0.2; }));
+  ASSERT_TRUE(lift(8.0));
+  ASSERT_TRUE(page.until([&] { return page.image["probe"]["force_N"].is_number(); }));
+  const double force_N = page.image["probe"]["force_N"];
+  EXPECT_GT(force_N, 0.1);
+  page.hand(10.0F, 100.0F);
+  ASSERT_TRUE(page.until([&] { return page.depth_mm < 10.1F; }));
+  const std::string name = page.status["recording"]["name"];
+  page.command(R"({"do":"replay","name":")" + name + R"("})");
+  ASSERT_TRUE(page.until([&] { return page.status.value("mode", "") == "replay"; }));
+  const auto shows = [&](double mm) {
+    return page.until(
+        [&] { return page.image["probe"]["lift_mm"] == mm && page.image["probe"]["force_N"].is_number(); });
+  };
+  page.command(R"({"do":"seek","time_s":)" + std::to_string(low_s) + "}");
+  EXPECT_TRUE(shows(4.0));
+  page.command(R"({"do":"seek","time_s":1000})");
+  EXPECT_TRUE(shows(8.0));
+  EXPECT_NEAR(page.image["probe"]["force_N"], force_N, 0.02 * force_N);
+  EXPECT_EQ(page.status["image"]["problem"], "");
+  // A page looks at the replay with another place of the probe, which does not move the live one.
+  ASSERT_TRUE(lift(2.0));
+  page.command(R"({"do":"seek","time_s":)" + std::to_string(low_s) + "}");
+  ASSERT_TRUE(page.until([&] { return std::abs(page.image["time_s"].get<double>() - low_s) < 1e-3; }));
+  EXPECT_EQ(page.image["probe"]["lift_mm"], 2.0);
+  page.command(R"({"do":"live"})");
+  ASSERT_TRUE(page.until([&] { return page.status.value("mode", "") == "live"; }));
+  EXPECT_TRUE(shows(8.0));
 }

@@ -215,7 +215,7 @@ export class ImagePanel {
     const probe = this.probe();
     if (probe) {
       const force = probe.force_N === null ? 'not pressing' : `${probe.force_N.toFixed(1)} N on the wall`;
-      this.place.title = probe.force_N === null ? 'The scenario has no [probe], or this is a recording. With probe.kind = "biplane" the probe presses wall and gland' : 'Force of wall and gland on the probe';
+      this.place.title = probe.force_N === null ? 'The scenario has no [probe]. With probe.kind = "biplane" the probe presses wall and gland' : 'Force of wall and gland on the probe';
       this.place.textContent = `z ${probe.depth_mm.toFixed(1).replace('-', '−')} mm, ${force}`;
       for (const name of ['lift_mm', 'tilt_deg', 'roll_deg', 'balloon_mm'] as const) this.sliders[`probe.${name}`].set(probe[name]);
     }
