@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -28,6 +29,15 @@ struct Range {
     high = std::max(high, x);
   }
 };
+
+/// Axes of the probe at rest, as columns: x to the patient's right, y anterior, z superior.
+Mat3 axes_at_rest() {
+  Mat3 rest;
+  rest.col(0) = -Vec3::UnitX();
+  rest.col(1) = -Vec3::UnitY();
+  rest.col(2) = Vec3::UnitZ();
+  return rest;
+}
 
 }  // namespace
 
@@ -68,16 +78,31 @@ ProbePlace probe_place(const ProbeSettings& settings, const ProbeSeat& seat) {
   // A tilt turns +z towards anterior, −y in LPS; a roll turns anterior towards the patient's left, +x.
   const Mat3 tilt = Eigen::AngleAxisd(settings.tilt_deg * kProbeRadians, Vec3::UnitX()).toRotationMatrix();
   const Mat3 roll = Eigen::AngleAxisd(settings.roll_deg * kProbeRadians, Vec3::UnitZ()).toRotationMatrix();
-  Mat3 rest;  // x to the patient's right, y anterior, z superior
-  rest.col(0) = -Vec3::UnitX();
-  rest.col(1) = -Vec3::UnitY();
-  rest.col(2) = Vec3::UnitZ();
   ProbePlace place;
-  place.axes = tilt * roll * rest;
+  place.axes = tilt * roll * axes_at_rest();
   const double depth = settings.depth_mm.value_or(seat.gland_mm) - seat.anus_mm.z();
   place.origin_mm = seat.anus_mm - settings.lift_mm * Vec3::UnitY() + depth * place.axes.col(2);
   place.radius_mm = 0.5 * settings.diameter_mm + settings.balloon_mm;
   return place;
+}
+
+Pose pose_of(const ProbePlace& place) { return {place.origin_mm, Eigen::Quaterniond(place.axes)}; }
+
+StepperMotions stepper_motions(const Pose& pose, const ProbeSeat& seat) {
+  // The rotation from rest is tilt · turn · roll, about x, y and z; a stepper has no turn.
+  const Mat3 from_rest = pose.rotation.normalized().toRotationMatrix() * axes_at_rest().transpose();
+  const double tilt = std::atan2(-from_rest(1, 2), from_rest(2, 2));
+  const Vec3 from_anus = pose.origin - seat.anus_mm;
+  // In the stepper's plane the origin lies at −lift · y + depth · (0, −sin tilt, cos tilt).
+  const double depth = from_anus.z() / std::cos(tilt);
+  StepperMotions motions;
+  motions.depth_mm = depth + seat.anus_mm.z();
+  motions.lift_mm = -from_anus.y() - depth * std::sin(tilt);
+  motions.tilt_deg = tilt / kProbeRadians;
+  motions.roll_deg = std::atan2(-from_rest(0, 1), from_rest(0, 0)) / kProbeRadians;
+  motions.aside_mm = from_anus.x();
+  motions.turned_deg = std::asin(std::clamp(from_rest(0, 2), -1.0, 1.0)) / kProbeRadians;
+  return motions;
 }
 
 }  // namespace stylet

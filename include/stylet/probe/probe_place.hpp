@@ -33,4 +33,21 @@ struct ProbePlace {
 /// The place of the probe that the stepper holds. The settings must have a probe.
 ProbePlace probe_place(const ProbeSettings& settings, const ProbeSeat& seat);
 
+/// A place as a pose: the origin and the axes of the probe.
+Pose pose_of(const ProbePlace& place);
+
+/// A free pose of the probe by the motions of a stepper, which are keys of [probe], and by the two that it lacks.
+struct StepperMotions {
+  double depth_mm = 0.0;
+  double lift_mm = 0.0;
+  double tilt_deg = 0.0;
+  double roll_deg = 0.0;
+  double aside_mm = 0.0;    ///< distance of the origin from the plane in which the stepper moves it; positive: left
+  double turned_deg = 0.0;  ///< angle of the axis to this plane; positive: the end of the probe goes left
+};
+
+/// The inverse of probe_place(): with aside_mm = turned_deg = 0, probe_place() of these motions has this pose.
+/// @param pose LPS; its local axes are those of ProbePlace::axes
+StepperMotions stepper_motions(const Pose& pose, const ProbeSeat& seat);
+
 }  // namespace stylet
