@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <optional>
 #include <utility>
 
 namespace stylet::cli {
@@ -26,10 +27,12 @@ class LinkCompanion final : public serve::Companion {
   [[nodiscard]] std::string why_no_pose() const override;
 
   void show(const serve::Scene& scene) override;
-  void show(const Snapshot& snapshot, const DeviceSnapshot& device) override {
-    link_->publish(igtl::picture_of(snapshot, device));
-  }
+  void show(const Snapshot& snapshot, const DeviceSnapshot& device) override;
   void show(const Eigen::Ref<const Eigen::Matrix3Xf>& displacement) override;
+
+  [[nodiscard]] bool wants_images() const override { return link_->state().connections > 0; }
+  void show(const serve::LiveImage& image) override;
+  [[nodiscard]] std::optional<Pose> probe_pose() override { return link_->probe_pose(); }
 
   [[nodiscard]] int port() const { return link_->state().port; }
 
@@ -42,6 +45,7 @@ class LinkCompanion final : public serve::Companion {
   Eigen::Matrix3Xf at_rest_;    ///< [mm] LPS, points of the undeformed scene
   Eigen::Matrix3Xf displaced_;  ///< [mm] displacement that was published last
   std::shared_ptr<const igtl::Surface::Triangles> triangles_;
+  std::optional<Pose> probe_;  ///< of the last picture
 };
 
 std::string LinkCompanion::why_no_pose() const {
@@ -64,6 +68,18 @@ void LinkCompanion::show(const serve::Scene& scene) {
     triangles[t] = {scene.triangles[3 * t], scene.triangles[3 * t + 1], scene.triangles[3 * t + 2]};
   triangles_ = std::make_shared<const igtl::Surface::Triangles>(std::move(triangles));
   publish_surface();
+}
+
+void LinkCompanion::show(const Snapshot& snapshot, const DeviceSnapshot& device) {
+  igtl::Picture picture = igtl::picture_of(snapshot, device);
+  picture.has_probe = probe_.has_value();
+  if (probe_) picture.probe = plain(*probe_);
+  link_->publish(picture);
+}
+
+void LinkCompanion::show(const serve::LiveImage& image) {
+  probe_ = image.probe;
+  (void)link_->publish_image(*image.in_patient);  // fails only for a picture that is too large
 }
 
 /// An unchanged displacement is not published again. The link limits the rate.

@@ -2,6 +2,7 @@
 #include "image_desk.hpp"
 
 #include "image_maker.hpp"
+#include "tracked_probe.hpp"
 
 #include "stylet/realtime/steppable.hpp"
 
@@ -62,10 +63,13 @@ struct ImageDesk::Parts {
   Scenario tables;                      ///< as set by the pages; in a replay with the recorded place of the probe
   bool is_probe_moved = false;          ///< by a page, during a replay
   ShownImage shown = ShownImage::none;
+  bool is_serving = false;  ///< a companion wants pictures
   bool is_changed = false;  ///< the tables or the kind of picture
+  std::optional<Pose> tracked;
+  bool is_moved = false;  ///< the tracked pose, or the patient, has changed
   std::variant<std::monostate, LoopState, Moment> newest;
   std::shared_ptr<const LiveImage> made;
-  std::string problem, stage;
+  std::string problem, stage, probe_problem;
 
   // Used by the caller's thread.
   Scenario planned;  ///< of the open patient, as its file has it
@@ -77,7 +81,22 @@ struct ImageDesk::Parts {
   std::jthread thread;  ///< last member, so that it starts when the others exist
 
   void run(const std::stop_token& stop);
+  [[nodiscard]] ShownImage kind() const;
+  void follow_tracker(ImageMaker& maker);
 };
+
+/// The kind of picture to make. The mutex must be held.
+ShownImage ImageDesk::Parts::kind() const {
+  if (shown != ShownImage::none || !is_serving) return shown;
+  return tables.ultrasound.array == UltrasoundArray::sagittal ? ShownImage::sagittal : ShownImage::transverse;
+}
+
+/// Moves the probe to a new tracked pose. The mutex must be held.
+void ImageDesk::Parts::follow_tracker(ImageMaker& maker) {
+  if (!std::exchange(is_moved, false) || !tracked) return;
+  const auto seat = maker.seat();
+  probe_problem = seat ? follow(*tracked, *seat, tables) : seat.error().what + ". " + seat.error().cure + ".";
+}
 
 /// Takes up what has come, makes a picture of it, and waits until the next one is due.
 void ImageDesk::Parts::run(const std::stop_token& stop) {
@@ -87,11 +106,12 @@ void ImageDesk::Parts::run(const std::stop_token& stop) {
     {
       std::unique_lock lock(mutex);
       const bool go_on = wake.wait(lock, stop, [&] {
-        return shown != ShownImage::none && (is_changed || patient || !std::holds_alternative<std::monostate>(newest));
+        return kind() != ShownImage::none && (is_changed || patient || !std::holds_alternative<std::monostate>(newest));
       });
       if (!go_on) return;
       if (patient) maker.open(*std::exchange(patient, std::nullopt));
-      maker.set(shown, tables);
+      follow_tracker(maker);
+      maker.set(kind(), tables, is_serving);
       is_changed = false;
       state = std::exchange(newest, std::monostate{});
     }
@@ -131,6 +151,7 @@ void ImageDesk::open(ImageSubject patient) {
   if (!has_same_tables(parts_->planned, patient.scenario)) take_tables(parts_->tables, patient.scenario);
   parts_->planned = patient.scenario;
   parts_->patient = std::move(patient);
+  parts_->is_moved = true;
   parts_->newest = std::monostate{};
   parts_->wake.notify_all();
 }
@@ -140,7 +161,30 @@ void ImageDesk::show(ShownImage shown) {
   const std::lock_guard lock(parts_->mutex);
   parts_->shown = shown;
   parts_->is_changed = true;
-  if (shown == ShownImage::none) parts_->problem.clear();
+  if (!is_busy()) parts_->problem.clear();
+  parts_->wake.notify_all();
+}
+
+void ImageDesk::serve(bool companion) {
+  if (std::exchange(is_serving_, companion) == companion) return;
+  const std::lock_guard lock(parts_->mutex);
+  parts_->is_serving = companion;
+  if (!is_busy()) parts_->problem.clear();
+  parts_->is_changed = true;
+  parts_->wake.notify_all();
+}
+
+void ImageDesk::track(const std::optional<Pose>& pose) {
+  const std::lock_guard lock(parts_->mutex);
+  std::optional<Pose>& tracked = parts_->tracked;
+  const bool is_same = pose && tracked
+                           ? pose->origin == tracked->origin && pose->rotation.coeffs() == tracked->rotation.coeffs()
+                           : pose.has_value() == tracked.has_value();
+  if (is_same) return;
+  is_tracked_ = pose.has_value();
+  tracked = pose;
+  if (!tracked) parts_->probe_problem.clear();
+  parts_->is_moved = parts_->is_changed = true;
   parts_->wake.notify_all();
 }
 
@@ -148,6 +192,8 @@ Result<> ImageDesk::set(const std::string& key, double value) {
   if (!is_of_pictures(key))
     return input_error(key, "it is not a key of the pictures", "Set a key of [probe], [ultrasound] or [fluoroscopy]");
   const std::lock_guard lock(parts_->mutex);
+  if (parts_->tracked && is_of_stepper(key))
+    return input_error(key, "a tracker moves the probe", "Move the tracked probe, or disconnect the tracker");
   const ScenarioValue as_number{.type = ScenarioValue::Type::number, .number = value};
   if (auto done = set_scenario_key(parts_->tables, key, as_number, key); !done) return done;
   parts_->is_probe_moved = parts_->is_probe_moved || key.starts_with("probe.");
@@ -193,6 +239,11 @@ std::string ImageDesk::problem() const {
 std::string ImageDesk::stage() const {
   const std::lock_guard lock(parts_->mutex);
   return parts_->stage;
+}
+
+std::string ImageDesk::probe_problem() const {
+  const std::lock_guard lock(parts_->mutex);
+  return parts_->probe_problem;
 }
 
 }  // namespace stylet::serve

@@ -36,11 +36,20 @@ class ImageDesk {
   /// Takes up another patient; the settings of the probe, scanner and C-arm become those of its scenario. After a
   /// replay, those from before it are back.
   void open(ImageSubject patient);
-  /// The kind of picture to make; `none` rests.
+  /// The kind of picture that the pages look at.
   void show(ShownImage shown);
   [[nodiscard]] ShownImage shown() const { return shown_; }
-  /// Sets a key of [probe], [ultrasound] or [fluoroscopy]. Errors: another key; a value out of range.
+  /// Whether a companion wants pictures. It gets those that the pages look at; while they look at none, ultrasound of
+  /// the scenario's array.
+  void serve(bool companion);
+  /// Whether pictures are made.
+  [[nodiscard]] bool is_busy() const { return shown_ != ShownImage::none || is_serving_; }
+  /// Sets a key of [probe], [ultrasound] or [fluoroscopy]. Errors: another key; a value out of range; a motion of the
+  /// stepper while a tracker moves the probe.
   Result<> set(const std::string& key, double value);
+  /// The pose to which a tracker moves the probe; empty: no tracker does, and the probe stays until set() moves it.
+  void track(const std::optional<Pose>& pose);
+  [[nodiscard]] bool is_tracked() const { return is_tracked_; }
 
   /// The newest moment of the loop. @param seeds where they are now
   void take(const Snapshot& snapshot, std::vector<ShownSeed> seeds);
@@ -56,11 +65,15 @@ class ImageDesk {
   [[nodiscard]] std::string problem() const;
   /// What is being prepared; empty: nothing.
   [[nodiscard]] std::string stage() const;
+  /// Where the probe does not do what the tracker's pose says; empty: it does.
+  [[nodiscard]] std::string probe_problem() const;
 
  private:
   struct Parts;
   std::unique_ptr<Parts> parts_;
   ShownImage shown_ = ShownImage::none;
+  bool is_serving_ = false;
+  bool is_tracked_ = false;
 };
 
 }  // namespace stylet::serve

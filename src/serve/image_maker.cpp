@@ -3,12 +3,16 @@
 
 #include "stylet/imaging/fluoroscope.hpp"
 #include "stylet/imaging/pressing_probe.hpp"
+#include "stylet/imaging/scan_conversion.hpp"
 #include "stylet/imaging/ultrasound_scanner.hpp"
 #include "stylet/sim/display_near_field.hpp"
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
+#include <cmath>
 #include <ctime>
 #include <numbers>
 #include <numeric>
@@ -105,6 +109,9 @@ struct ImageMaker::Parts {
   std::optional<LoopMotion> motion;
   std::optional<UltrasoundScanner> scanner;
   std::unique_ptr<Fluoroscope> fluoroscope;
+  bool in_patient = false;
+  ScanConversion conversion;
+  std::vector<std::uint8_t> grey;  ///< of the last ultrasound picture, in the grey values of the scenario
   std::optional<ProbeSeat> seat;
   std::optional<PressingProbe> pressing;  ///< of a scenario with a probe, of a live patient while the model is there
   std::string remark;                     ///< why the probe of a replay does not press
@@ -113,6 +120,8 @@ struct ImageMaker::Parts {
     return patient.scenario.probe.kind != ProbeKind::none && (patient.field || patient.is_recorded);
   }
   [[nodiscard]] ImageJson probe_json(const ProbePlace& place, const std::optional<double>& force_N) const;
+  Result<> find_seat();
+  std::shared_ptr<const GreyPicture> converted(const PolarPicture& picture);
   Result<> prepare_probe(const std::function<void(const std::string&)>& tell);
   Result<> prepare_scanner(const std::function<void(const std::string&)>& tell);
   Result<std::shared_ptr<const LiveImage>> ultrasound();
@@ -139,9 +148,10 @@ void ImageMaker::open(ImageSubject patient) {
   if (p.patient.field) p.motion.emplace(p.patient.field);
 }
 
-void ImageMaker::set(ShownImage shown, const Scenario& tables) {
+void ImageMaker::set(ShownImage shown, const Scenario& tables, bool in_patient) {
   Parts& p = *parts_;
   p.shown = shown;
+  p.in_patient = in_patient;
   if (p.scanner && !(tables.ultrasound == p.tables.ultrasound)) p.scanner.reset();
   if (!(tables.fluoroscopy == p.tables.fluoroscopy)) p.fluoroscope.reset();
   p.tables.probe = tables.probe;
@@ -178,13 +188,39 @@ ImageJson ImageMaker::Parts::probe_json(const ProbePlace& place, const std::opti
           {"force_N", force_N ? ImageJson(*force_N) : ImageJson(nullptr)}};
 }
 
+Result<> ImageMaker::Parts::find_seat() {
+  if (seat) return Ok{};
+  auto found = probe_seat(*patient.mesh, patient.gland, patient.scenario.name);
+  if (!found) return found.error();
+  seat = *found;
+  return Ok{};
+}
+
+Result<ProbeSeat> ImageMaker::seat() {
+  if (!parts_->patient.mesh) return failure("the probe", "no case is open yet", "Wait until the case is open");
+  if (auto found = parts_->find_seat(); !found) return found.error();
+  return *parts_->seat;
+}
+
+/// Scan conversion of a picture of the range kImageRange_dB, with the gain and the dynamic range of the scenario.
+std::shared_ptr<const GreyPicture> ImageMaker::Parts::converted(const PolarPicture& picture) {
+  std::array<std::uint8_t, 256> shade{};
+  for (std::size_t value = 0; value < shade.size(); ++value) {
+    const double dB = kImageRange_dB * (static_cast<double>(value) / 255.0 - 1.0) + tables.ultrasound.gain_dB;
+    const double share = std::clamp(1.0 + dB / tables.ultrasound.dynamic_range_dB, 0.0, 1.0);
+    shade[value] = static_cast<std::uint8_t>(std::lround(255.0 * share));
+  }
+  grey.resize(picture.grey.size());
+  std::transform(picture.grey.begin(), picture.grey.end(), grey.begin(),
+                 [&](std::uint8_t value) { return shade[value]; });
+  auto made = std::make_shared<GreyPicture>(conversion.convert({picture.beams, grey}));
+  made->time_s = moment.time_s;
+  return made;
+}
+
 /// Finds the place of the probe, and solves for the wall that it presses.
 Result<> ImageMaker::Parts::prepare_probe(const std::function<void(const std::string&)>& tell) {
-  if (!seat) {
-    auto found = probe_seat(*patient.mesh, patient.gland, patient.scenario.name);
-    if (!found) return found.error();
-    seat = *found;
-  }
+  if (auto found = find_seat(); !found) return found;
   if (pressing || !may_press() || !remark.empty()) return Ok{};
   tell("The rectal wall under the probe is being prepared");
   if (patient.is_recorded) {
@@ -229,6 +265,8 @@ Result<std::shared_ptr<const LiveImage>> ImageMaker::Parts::ultrasound() {
   image->rows = static_cast<std::uint32_t>(beams.lines);
   image->columns = static_cast<std::uint32_t>(beams.samples);
   image->pixels.assign(picture.grey.begin(), picture.grey.end());
+  image->probe = pose_of(place);
+  if (in_patient) image->in_patient = converted(picture);
   image->text = ImageJson{{"modality", "ultrasound"},
                           {"time_s", moment.time_s},
                           {"array", to_string(shown)},
@@ -257,12 +295,14 @@ Result<std::shared_ptr<const LiveImage>> ImageMaker::Parts::xray() {
   }
   Moment shown_moment = moment;
   ImageJson probe = nullptr;
+  auto image = std::make_shared<LiveImage>();
   if (pressing) {
-    const double force_N = pressing->press(tables.probe, shown_moment).force_N.norm();
-    probe = probe_json(probe_place(tables.probe, *seat), force_N);
+    const ProbePlace place = probe_place(tables.probe, *seat);
+    probe = probe_json(place, pressing->press(tables.probe, shown_moment).force_N.norm());
+    image->probe = pose_of(place);
   }
   const GreyPicture& picture = fluoroscope->expose(shown_moment);
-  auto image = std::make_shared<LiveImage>();
+  if (in_patient) image->in_patient = std::make_shared<GreyPicture>(picture);
   image->rows = static_cast<std::uint32_t>(picture.rows);
   image->columns = static_cast<std::uint32_t>(picture.columns);
   image->pixels = picture.pixels;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "image_desk.hpp"
+#include "stylet/probe/probe_place.hpp"
 
 #include <functional>
 #include <memory>
@@ -19,12 +20,15 @@ class ImageMaker {
 
   void open(ImageSubject patient);
   /// @param tables scenario whose tables of probe, ultrasound and X-ray count
-  void set(ShownImage shown, const Scenario& tables);
+  /// @param in_patient whether pictures get LiveImage::in_patient
+  void set(ShownImage shown, const Scenario& tables, bool in_patient);
   /// Takes the state of the loop: the displacement is computed from the forces.
   void take(double time_s, std::span<const TissueForce> forces, const ShownNeedle& needle,
             const std::vector<ShownSeed>& seeds);
   void take(Moment moment);
 
+  /// Where the probe enters and rests. Errors: the patient has no place for a probe.
+  Result<ProbeSeat> seat();
   /// The picture of the last moment. @param tell is told what is being prepared, since that takes seconds
   /// Errors: the patient has no place for a probe.
   Result<std::shared_ptr<const LiveImage>> make(const std::function<void(const std::string&)>& tell);

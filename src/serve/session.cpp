@@ -161,6 +161,7 @@ struct Session::Parts {
   [[nodiscard]] std::vector<ShownSeed> shown_seeds();
   void open_images();
   void take_moment();
+  void serve_images();
   void show_images();
   void end_replay();
   void choose_needle(const Request& request, std::size_t which);
@@ -542,22 +543,38 @@ std::vector<ShownSeed> Session::Parts::shown_seeds() {
   return shown;
 }
 
-/// Records where the probe is, and passes the newest moment on if somebody looks at pictures of it.
+/// Records where the probe is, and passes the newest moment on if pictures of it are made.
 void Session::Parts::take_moment() {
   if (live) live->record_probe(images.probe());
-  if (images.shown() == ShownImage::none) return;
+  if (!images.is_busy()) return;
   if (replay) {
     if (moments) images.take(moments->at(replay->time_s()), moments->probe_at(replay->time_s()));
     return;
   }
-  if (live) images.take(live->runner().snapshot(), shown_seeds());
+  if (live && live->time_s() > 0.0) images.take(live->runner().snapshot(), shown_seeds());
 }
 
-/// Shows a new picture to the viewers, and tells them what is missing.
+/// Lets a companion have pictures and move the probe. Like the rest of what it sees, pictures are of the live needle.
+void Session::Parts::serve_images() {
+  if (!settings.companion) return;
+  const bool is_anew = !images.is_busy();
+  images.serve(live && settings.companion->wants_images());
+  images.track(live ? settings.companion->probe_pose() : std::nullopt);
+  if (is_anew) take_moment();
+}
+
+/// Shows a new picture to those who look, and tells what is missing.
 void Session::Parts::show_images() {
-  if (auto image = images.news()) audience.show(std::move(image));
-  SessionStatus::Image now{to_string(images.shown()), images.problem(), images.stage()};
-  if (now.shown == status.image.shown && now.problem == status.image.problem && now.stage == status.image.stage) return;
+  const bool is_shown = images.shown() != ShownImage::none;
+  if (auto image = images.news()) {
+    if (live && image->in_patient && settings.companion->wants_images()) settings.companion->show(*image);
+    if (is_shown) audience.show(std::move(image));
+  }
+  SessionStatus::Image now{to_string(images.shown()), images.problem(), images.stage(),
+                           images.is_tracked() ? settings.companion->name() : "page", images.probe_problem()};
+  if (now == status.image) return;
+  if (!is_shown && settings.companion && settings.say && !now.problem.empty() && now.problem != status.image.problem)
+    settings.say(settings.companion->name() + " gets no pictures: " + now.problem);
   status.image = std::move(now);
   next_status = {};
 }
@@ -742,6 +759,7 @@ void Session::Parts::carry_out(const Request& request) {
         return refuse(request, input_error("picture", "there is no picture \"" + request.text + "\"",
                                            "Choose none, transverse, sagittal or xray"));
       images.show(*shown);
+      take_moment();
       break;
     }
     case Kind::set:
@@ -874,6 +892,7 @@ void Session::Parts::tick(double dt_s) {
   take_field();
   show_map();
   follow_implant();
+  serve_images();
   show_images();
   std::shared_ptr<const LiveFrame> frame;
   if (live) {

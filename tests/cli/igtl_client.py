@@ -8,12 +8,20 @@ HEADER = struct.Struct(">H12s20sQQQ")  # version, type, name, time stamp, bytes 
 POLYNOMIAL = 0x42F0E1EBA9EA3693        # CRC-64 of ECMA-182, most significant bit first
 
 
+def remainder(value):
+    """The remainder of eight bits that are at the top of a value."""
+    for _ in range(8):
+        value = (value << 1 ^ (POLYNOMIAL if value >> 63 else 0)) & (1 << 64) - 1
+    return value
+
+
+REMAINDERS = [remainder(byte << 56) for byte in range(256)]
+
+
 def crc64(data):
     value = 0
     for byte in data:
-        value ^= byte << 56
-        for _ in range(8):
-            value = (value << 1 ^ (POLYNOMIAL if value >> 63 else 0)) & (1 << 64) - 1
+        value = (value << 8 & (1 << 64) - 1) ^ REMAINDERS[value >> 56 ^ byte]
     return value
 
 
@@ -41,22 +49,29 @@ class Client:
         self.connection.sendall(message("TRANSFORM", name, body))
 
     def read(self, count):
-        data = bytearray()
-        while len(data) < count:
-            part = self.connection.recv(count - len(data))
-            if not part:
+        data = memoryview(bytearray(count))
+        have = 0
+        while have < count:
+            part = self.connection.recv_into(data[have:])
+            if part == 0:
                 raise ConnectionError("the other side has closed")
-            data += part
+            have += part
         return bytes(data)
+
+    def receive(self):
+        """The next message: its type, its name, its body, and the checksum that came with it."""
+        version, kind, name, _, size, checksum = HEADER.unpack(self.read(HEADER.size))
+        if version not in (1, 2):
+            raise ValueError(f"a message of version {version}")
+        return kind.rstrip(b"\0").decode(), name.rstrip(b"\0").decode(), self.read(size), checksum
 
     def next(self, kind, name):
         """The body of the next message of this type and name."""
         while True:
-            _, its_kind, its_name, _, size, checksum = HEADER.unpack(self.read(HEADER.size))
-            body = self.read(size)
-            if (its_kind.rstrip(b"\0").decode(), its_name.rstrip(b"\0").decode()) != (kind, name):
+            its_kind, its_name, body, checksum = self.receive()
+            if (its_kind, its_name) != (kind, name):
                 continue
-            if size < 1000 and crc64(body) != checksum:
+            if len(body) < 1000 and crc64(body) != checksum:
                 raise ValueError(f"{kind} {name} with a wrong checksum")
             return body
 

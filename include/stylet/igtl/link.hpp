@@ -37,7 +37,7 @@ struct LinkSettings {
   std::string status = "Stylet";
   double poses_hz = 60.0;      ///< [1/s] 1…1000, rate of the messages with poses and force
   double surface_hz = 10.0;    ///< [1/s] 0.1…poses_hz, highest rate of the messages with the surface
-  double images_hz = 20.0;     ///< [1/s] 0.1…poses_hz, highest rate of the images
+  double images_hz = 30.0;     ///< [1/s] 0.1…poses_hz, highest rate of the images
   double fresh_s = 0.25;       ///< [s] 0.01…10; the force of a picture older than this is not sent
   int max_connections = 8;     ///< 1…64, of a server; further connections are refused
   double give_up_s = 10.0;     ///< [s] 0.1…600; a connection that accepts no data for this time is closed

@@ -3,16 +3,18 @@
 
 #include "stylet/realtime/device.hpp"
 #include "stylet/realtime/snapshot.hpp"
+#include "stylet/serve/image_picture.hpp"
 #include "stylet/serve/picture.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace stylet::serve {
 
 /// Another program that is connected besides the pages, for example over OpenIGTLink: it is shown a live session and
-/// may move the needle. It stays connected when a reset, another hole or another case starts a new real-time loop. The
-/// session's thread makes all calls; each must return at once.
+/// may move the needle and the probe. It stays connected when a reset, another hole or another case starts a new
+/// real-time loop. The session's thread makes all calls; each must return at once.
 class Companion {
  public:
   virtual ~Companion() = default;
@@ -33,6 +35,13 @@ class Companion {
   /// Receives the displacement of the scene's points.
   /// @param displacement [mm] (3 × n) LPS
   virtual void show(const Eigen::Ref<const Eigen::Matrix3Xf>& displacement) = 0;
+
+  /// Whether ultrasound and X-ray pictures are to be made for it now, also while no page looks at one.
+  [[nodiscard]] virtual bool wants_images() const { return false; }
+  /// Receives a picture, LiveImage::in_patient included.
+  virtual void show(const LiveImage& /*image*/) {}
+  /// The pose (LPS, local axes as ProbePlace::axes) to which it moves the probe; empty: the pages move the probe.
+  [[nodiscard]] virtual std::optional<Pose> probe_pose() { return {}; }
 };
 
 }  // namespace stylet::serve

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "stylet/imaging/grey_picture.hpp"
+
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,6 +25,9 @@ struct LiveImage {
   std::string text;                     ///< JSON: modality, place, scale (docs/live_protocol.md)
   std::uint32_t rows = 0, columns = 0;  ///< ultrasound: lines, and samples along each
   std::vector<std::uint8_t> pixels{};   ///< (rows × columns) row by row
+  /// The same picture as a rectangle in the patient, in the scenario's grey values; null while no companion wants it.
+  std::shared_ptr<const GreyPicture> in_patient{};
+  std::optional<Pose> probe{};  ///< LPS, of the probe in this picture; empty: there is none
 };
 
 }  // namespace stylet::serve

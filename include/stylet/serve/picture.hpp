@@ -86,9 +86,12 @@ struct SessionStatus {
     std::string warning;  ///< what may soon stop the recording
   } recording;
   struct Image {
-    std::string shown = "none";  ///< the kind of picture that is made: "none", "transverse", "sagittal" or "xray"
+    std::string shown = "none";  ///< the kind of picture that the pages get: "none", "transverse", "sagittal" or "xray"
     std::string problem;         ///< why it cannot be made; empty: it can
     std::string stage;           ///< what is being prepared for it; empty: nothing
+    std::string probe_device = "page";  ///< what moves the probe: "page", or a companion's name
+    std::string probe_problem;          ///< where the probe does not do what a companion's pose says; empty: it does
+    bool operator==(const Image&) const = default;
   } image;
   struct Replay {
     std::string name;  ///< recording that is replayed; empty: the session is live

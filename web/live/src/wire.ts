@@ -54,7 +54,7 @@ export interface Status {
   you_hold?: boolean; held?: boolean; asking?: number; you_ask?: boolean; viewers?: number; device?: string; device_problem?: string;
   recording?: { name: string; seconds: number; problem?: string; warning?: string } | null;
   replay?: { name: string; time_s: number; duration_s: number; playing: boolean; rate: number } | null;
-  image?: { shown: ShownImage; problem: string; stage: string };
+  image?: { shown: ShownImage; problem: string; stage: string; probe_device?: string; probe_problem?: string };
   loop?: { steps: number; missed: number; p50_us: number; p99_us: number; max_us: number; rights?: string } | null;
   dropped_messages?: number; skipped_frames?: number;
 }

@@ -70,6 +70,7 @@ export class ImagePanel {
   private readonly steps: HTMLButtonElement[];
   private readonly sliders: Record<string, Slider> = {};
   private readonly place = element('output', 'probe-place');
+  private readonly tracked = element('p', 'quiet');
   private readonly pointer = element('output', 'pointer');
   private readonly note = element('p', 'view-note');
   private readonly freeze: HTMLButtonElement;
@@ -137,7 +138,7 @@ export class ImagePanel {
     for (const b of [template, truth]) b.addEventListener('click', () => ultrasound.box.request());
     this.knobs.ultrasound.append(
       row(...this.arrays.map(([, b]) => b)),
-      element('h3', '', 'Stepper'), row(...this.steps), this.place,
+      element('h3', '', 'Stepper'), row(...this.steps), this.place, this.tracked,
       slider('probe.lift_mm', 'Lift', 'mm', -5, 20, 0.5, 'The probe to anterior, against the gland'),
       slider('probe.tilt_deg', 'Tilt', '°', -15, 15, 0.5, 'Positive: the end of the probe goes to anterior'),
       slider('probe.roll_deg', 'Roll', '°', -70, 70, 1, 'Turns the sagittal picture to the patient’s left'),
@@ -192,6 +193,16 @@ export class ImagePanel {
     this.send();
   }
 
+  /** Says that a tracker moves the probe, and where the probe does not do what the tracker says. */
+  private writeTracked(device: string, problem: string): void {
+    const isTracked = device !== 'page';
+    const text = isTracked ? `The probe follows ${device}. ${problem}` : '';
+    if (this.tracked.textContent !== text) this.tracked.textContent = text;
+    this.tracked.hidden = !isTracked;
+    for (const name of ['lift_mm', 'tilt_deg', 'roll_deg']) this.sliders[`probe.${name}`].disabled = isTracked;
+    for (const b of this.steps) b.disabled = isTracked;
+  }
+
   private write(): void {
     const { session, shown } = this;
     const { image } = session;
@@ -212,6 +223,7 @@ export class ImagePanel {
     this.note.hidden = note === '';
     for (const [array, b] of this.arrays) b.setAttribute('aria-pressed', String(array === shown));
     this.freeze.setAttribute('aria-pressed', String(this.ultrasound.isFrozen));
+    this.writeTracked(session.status?.image?.probe_device ?? 'page', session.status?.image?.probe_problem ?? '');
     const probe = this.probe();
     if (probe) {
       const force = probe.force_N === null ? 'not pressing' : `${probe.force_N.toFixed(1)} N on the wall`;
