@@ -141,15 +141,15 @@ Result<> check_options(const BenchArguments& arguments) {
     bool given;
     std::vector<std::string> taken_by;
   };
-  const Option options[] = {
-      {"--nodes",
-       arguments.nodes > 0,
-       {"remesh", "coupling", "scale", "step", "loop", "viewers", "supply", "display", "image", "fluoro", "probe"}},
-      {"--contacts", arguments.contacts > 0, {"scale", "loop", "viewers"}},
-      {"--needles", arguments.needles > 0, {"together"}},
-      {"--steps", arguments.steps > 0, {"scale"}},
-      {"--seconds", arguments.seconds > 0.0, {"loop", "viewers"}},
-      {"--speed", arguments.speed > 0.0, {"supply"}}};
+  const Option options[] = {{"--nodes",
+                             arguments.nodes > 0,
+                             {"remesh", "coupling", "scale", "step", "loop", "viewers", "pictures", "supply", "display",
+                              "image", "fluoro", "probe"}},
+                            {"--contacts", arguments.contacts > 0, {"scale", "loop", "viewers", "pictures"}},
+                            {"--needles", arguments.needles > 0, {"together"}},
+                            {"--steps", arguments.steps > 0, {"scale"}},
+                            {"--seconds", arguments.seconds > 0.0, {"loop", "viewers", "pictures"}},
+                            {"--speed", arguments.speed > 0.0, {"supply"}}};
   for (const Option& option : options) {
     const std::vector<std::string>& by = option.taken_by;
     if (!option.given || std::find(by.begin(), by.end(), arguments.what) != by.end()) continue;
@@ -173,7 +173,7 @@ Result<> run_bench(const BenchArguments& arguments, Console& console) {
   if (arguments.what == "probe") return bench_probe_command(arguments, console);
   if (arguments.what == "dose") return bench_dose_command(arguments, console);
   if (arguments.what == "together") return bench_together_command(arguments, console);
-  if (arguments.what == "viewers") return bench_viewers_command(arguments, console);
+  if (arguments.what == "viewers" || arguments.what == "pictures") return bench_viewers_command(arguments, console);
   return bench_remesh_command(arguments, console);
 }
 
@@ -214,26 +214,27 @@ Command add_bench_command(CLI::App& program) {
          "field and with node addition; scale: time of a step against the number of nodes and contacts; loop: duration "
          "and lateness of the steps of the real-time loop; supply: speeds that a needle can have where no compliance "
          "was precomputed; display: time and error of a picture of the deformed patient; viewers: time of the steps of "
-         "a live session without viewers and with two viewers; needle: accuracy of the needle models against their "
+         "a live session without viewers and with two viewers; pictures: the same without and with ultrasound pictures "
+         "made beside it; needle: accuracy of the needle models against their "
          "cost; dose: time of the dose rates of 100 seeds at a million points, by the formula and by a table; "
          "image: time of an ultrasound picture; fluoro: time of an X-ray picture; probe: time to find how an "
          "ultrasound "
          "probe presses the rectal wall; together: time of a step while other needles rest in the tissue")
       ->required()
       ->check(one_of({"remesh", "step", "coupling", "scale", "loop", "supply", "display", "image", "fluoro", "probe",
-                      "viewers", "needle", "dose", "together"}));
+                      "viewers", "pictures", "needle", "dose", "together"}));
   app->add_option("--nodes", arguments->nodes,
                   fmt::format("Nodes of the largest mesh: remesh 125 to 4096 (default {}), coupling 500 or more "
                               "(default {}), scale, supply and display 570 or more (default {}), fluoro "
-                              "and probe 3000 or more (default 20000). Nodes of the only mesh: step, loop "
-                              "and viewers 500 or more (default {}), image 570 or more (default 5000)",
+                              "and probe 3000 or more (default 20000). Nodes of the only mesh: step, loop, "
+                              "viewers and pictures 500 or more (default {}), image 570 or more (default 5000)",
                               kRemeshNodes, measure::CouplingBenchOptions{}.largest,
                               measure::ScaleBenchOptions{}.largest, measure::StepBenchOptions{}.nodes))
       ->type_name("N")
       ->check(whole_number_between(1, 1000000));
-  app->add_option(
-         "--contacts", arguments->contacts,
-         "Approximate number of contacts: scale one number (default 20, 40 and 60), loop and viewers (default 40)")
+  app->add_option("--contacts", arguments->contacts,
+                  "Approximate number of contacts: scale one number (default 20, 40 and 60), loop, viewers and "
+                  "pictures (default 40)")
       ->type_name("N")
       ->check(whole_number_between(5, measure::most_driven_contacts()));
   app->add_option("--needles", arguments->needles,
@@ -246,7 +247,7 @@ Command add_bench_command(CLI::App& program) {
       ->type_name("N")
       ->check(whole_number_between(1, 100000000));
   app->add_option("--seconds", arguments->seconds,
-                  "loop and viewers: duration in seconds of real time (default 30 and 120)")
+                  "loop, viewers and pictures: duration in seconds of real time (default 30, 120 and 120)")
       ->type_name("S")
       ->check(number_between(1.0, 86400.0));
   app->add_option("--speed", arguments->speed,

@@ -34,7 +34,7 @@ using boost::asio::ip::tcp;
 constexpr double kChange_s = 0.5;     ///< simulated time after viewers connect or leave that is not counted
 constexpr double kPatience_s = 60.0;  ///< wall-clock time after which a loop that does not advance is an error
 
-/// Moves the needle by a script and keeps the simulated time.
+/// Moves the needle by a script, keeps the simulated time, and counts the pictures that it wants.
 class Script final : public serve::Companion {
  public:
   explicit Script(BaseMotion motion) : motion_(std::move(motion)) {}
@@ -46,9 +46,16 @@ class Script final : public serve::Companion {
   void show(const serve::Scene& /*scene*/) override {}
   void show(const Snapshot& snapshot, const DeviceSnapshot& /*device*/) override { time_s_ = snapshot.step.time_s; }
   void show(const Eigen::Ref<const Eigen::Matrix3Xf>& /*displacement*/) override {}
+  [[nodiscard]] bool wants_images() const override { return wants_; }
+  void show(const serve::LiveImage& /*image*/) override { ++images_; }
+
+  void want_images(bool wants) { wants_ = wants; }
+  [[nodiscard]] std::int64_t images() const { return images_; }
 
  private:
   BaseMotion motion_;
+  std::atomic<bool> wants_ = false;
+  std::atomic<std::int64_t> images_ = 0;
   std::atomic<double> time_s_ = 0.0;
 };
 
@@ -129,12 +136,23 @@ void add_turn(const Turn& turn, const std::vector<Step>& steps, ViewersReport::C
   condition.step_cpu.merge(times);
 }
 
+double median_of(std::vector<std::int64_t> values) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return 0.5 * static_cast<double>(values[half] + values[(values.size() - 1) / 2]);
+}
+
 }  // namespace
+
+double ViewersReport::p99_ratio() const { return median_of(with.p99_ns) / median_of(without.p99_ns); }
 
 Result<ViewersReport> bench_viewers(const ViewersBenchOptions& options, const Progress& progress) {
   const auto anatomy = mesh_demo(options.nodes, progress);
   if (!anatomy) return anatomy.error();
-  const auto model = Model::compile(driven_scenario(options.contacts), anatomy->mesh, "the demo", {}, progress);
+  Scenario scenario = driven_scenario(options.contacts);
+  if (options.ultrasound) scenario.probe.kind = ProbeKind::biplane;
+  const auto model = Model::compile(scenario, anatomy->mesh, "the demo", {}, progress);
   if (!model) return model.error();
   const PlannedInsertion& plan = (*model)->insertions().front();
   const Pose first = plan.motion.at(0.0);
@@ -172,7 +190,7 @@ Result<ViewersReport> bench_viewers(const ViewersBenchOptions& options, const Pr
 
   ViewersReport result;
   result.nodes = (*model)->mesh().node_count();
-  result.viewers = options.viewers;
+  result.viewers = options.ultrasound ? 0 : options.viewers;
   std::vector<Turn> turns;
   double watched_s = 0.0;
   // The first turn is not counted, because the skin breaks only then and the displacement field is being prepared.
@@ -180,7 +198,8 @@ Result<ViewersReport> bench_viewers(const ViewersBenchOptions& options, const Pr
   for (int turn = 0; turn < 2 * pairs; ++turn) {
     const bool watched = turn % 2 == 1;
     std::vector<std::unique_ptr<Viewer>> viewers;
-    for (int k = 0; watched && k < options.viewers; ++k) {
+    script->want_images(watched && options.ultrasound);
+    for (int k = 0; watched && k < result.viewers; ++k) {
       auto viewer = Viewer::open((*server)->port());
       if (!viewer) return viewer.error();
       viewers.push_back(std::move(*viewer));
@@ -188,6 +207,7 @@ Result<ViewersReport> bench_viewers(const ViewersBenchOptions& options, const Pr
     if (auto waited = wait_until(script->time_s() + kChange_s); !waited) return waited.error();
     const double from_s = script->time_s();
     turns.push_back({from_s, from_s + turn_s, watched});
+    const std::int64_t images = script->images();
     std::vector<std::int64_t> pictures;
     std::vector<std::int64_t> bytes;
     for (const auto& viewer : viewers) {
@@ -195,16 +215,20 @@ Result<ViewersReport> bench_viewers(const ViewersBenchOptions& options, const Pr
       bytes.push_back(viewer->bytes());
     }
     if (auto waited = wait_until(from_s + turn_s); !waited) return waited.error();
+    if (watched) {
+      result.ultrasound_per_s += static_cast<double>(script->images() - images);
+      watched_s += turn_s;
+    }
     for (std::size_t k = 0; k < viewers.size(); ++k) {
       result.pictures_per_s += static_cast<double>(viewers[k]->pictures() - pictures[k]);
       result.megabytes_per_s += 1e-6 * static_cast<double>(viewers[k]->bytes() - bytes[k]);
-      watched_s += turn_s;
     }
   }
   (*server)->stop();
   if (watched_s > 0.0) {
-    result.pictures_per_s /= watched_s;
-    result.megabytes_per_s /= watched_s;
+    result.pictures_per_s /= watched_s * std::max(1, result.viewers);
+    result.megabytes_per_s /= watched_s * std::max(1, result.viewers);
+    result.ultrasound_per_s /= watched_s;
   }
 
   const auto recording = read_recording(recording_in(folder.path));

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""stylet bench step, loop, viewers, supply, probe and display: the contents of their rows on the coarsest mesh. Times
+"""stylet bench step, loop, viewers, pictures, supply, probe and display: the contents of their rows on the coarsest mesh. Times
 are not checked."""
 import unittest
 
@@ -57,6 +57,16 @@ class ViewersBench(InFolder):
             self.assertEqual(len(times["p99_of_turns"]), 1)
         self.assertAlmostEqual(found["p99_ratio"], found["with_us"]["p99"] / found["without_us"]["p99"])
         self.refuse("bench", "viewers", "--nodes", "499", says=["--nodes", "499", "500"])
+
+    def test_compares_the_steps_beside_pictures_to_those_without(self):
+        found = self.json_of("bench", "pictures", "--nodes", "570", "--contacts", "20", "--seconds", "1")
+        self.assertEqual(found["viewers"], 0)
+        self.assertGreater(found["ultrasound_per_s"], 1)  # even on a busy machine
+        for key in ("without_us", "with_us"):
+            self.assertGreater(found[key]["count"], 1000)
+            self.assertEqual(len(found[key]["p99_of_turns"]), 1)
+        self.assertAlmostEqual(found["p99_ratio"], found["with_us"]["p99"] / found["without_us"]["p99"])
+        self.refuse("bench", "pictures", "--nodes", "499", says=["pictures", "--nodes", "499", "500"])
 
 
 class SupplyBench(InFolder):

@@ -103,8 +103,8 @@ class Bench(InFolder):
         self.refuse("bench", "remsh", says=["remsh", "remesh", "coupling"])
 
     def test_an_option_of_another_subject_is_refused_with_those_that_take_it(self):
-        self.refuse("bench", "step", "--contacts", "20", says=["--contacts", "step", "scale, loop, viewers"])
-        self.refuse("bench", "scale", "--seconds", "3", says=["--seconds", "scale", "loop, viewers"])
+        self.refuse("bench", "step", "--contacts", "20", says=["--contacts", "step", "scale, loop, viewers, pictures"])
+        self.refuse("bench", "scale", "--seconds", "3", says=["--seconds", "scale", "loop, viewers, pictures"])
         self.refuse("bench", "scale", "--speed", "4", says=["--speed", "scale", "supply"])
         self.refuse("bench", "loop", "--steps", "1000", says=["--steps", "loop", "scale"])
         self.refuse("bench", "needle", "--nodes", "600", says=["--nodes", "needle", "remesh", "display"])
