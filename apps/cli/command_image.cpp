@@ -26,7 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ImageArguments {
-  std::string file, output, array;
+  std::string file, output, array, seeds;
   std::vector<std::string> settings;
   double z_mm = std::numeric_limits<double>::quiet_NaN();
   double time_s = std::numeric_limits<double>::quiet_NaN();
@@ -77,8 +77,16 @@ std::vector<double> planes_through(const ImagedPatient& patient, double step_mm)
   return planes;
 }
 
+/// The directions of a picture, in words.
+const char* directions_of(ProbeKind kind, UltrasoundArray array) {
+  const bool transverse = array == UltrasoundArray::transverse;
+  if (kind == ProbeKind::endfire)
+    return transverse ? "superior up, patient's left at the right" : "superior up, anterior at the right";
+  return transverse ? "anterior up, patient's left at the right" : "anterior up, superior at the left";
+}
+
 PictureMarks marks_of(const MadePicture& made, const ImageArguments& arguments, const ImagedPatient& patient,
-                      UltrasoundArray array) {
+                      ProbeKind kind, UltrasoundArray array) {
   PictureMarks marks;
   const GreyPicture& picture = made.picture;
   const auto place = [&](const Vec3& x) {
@@ -86,9 +94,7 @@ PictureMarks marks_of(const MadePicture& made, const ImageArguments& arguments, 
     return std::array<double, 2>{from.dot(picture.right), from.dot(picture.down)};
   };
   marks.surface_row = place(made.beams.point_mm(0.5 * (made.beams.lines - 1), 0.0))[1];
-  marks.title = array == UltrasoundArray::transverse
-                    ? fmt::format("transverse, z = {:.1f} mm; anterior up, patient's left at the right", made.z_mm)
-                    : fmt::format("sagittal, z = {:.1f} mm; anterior up, superior at the left", made.z_mm);
+  marks.title = fmt::format("{}, z = {:.1f} mm; {}", name_of(array), made.z_mm, directions_of(kind, array));
   marks.notice = kPictureNotice;
   if (!arguments.grid) return marks;
   const TemplateGrid& grid = patient.scenario.grid;
@@ -152,9 +158,11 @@ Result<> run_image(const ImageArguments& arguments, Console& console) {
   if (Result<> checked = check_arguments(arguments); !checked) return checked;
   std::vector<std::string> settings_of_probe = arguments.settings;
   if (const auto z = given(arguments.z_mm)) settings_of_probe.push_back(fmt::format("probe.depth_mm={}", *z));
-  const Result<ImagedPatient> patient =
+  Result<ImagedPatient> patient =
       imaged_patient(arguments.file, settings_of_probe, given(arguments.time_s), console.progress());
   if (!patient) return patient.error();
+  if (!arguments.seeds.empty())
+    if (Result<> added = add_planned_seeds(*patient, arguments.seeds); !added) return added;
   UltrasoundArray array = patient->scenario.ultrasound.array;
   if (!arguments.array.empty())
     array = arguments.array == "sagittal" ? UltrasoundArray::sagittal : UltrasoundArray::transverse;
@@ -178,7 +186,8 @@ Result<> run_image(const ImageArguments& arguments, Console& console) {
     const MadePicture& one = (*made)[k];
     const fs::path path = arguments.all && !volume ? numbered(output, k) : output;
     if (!volume) {
-      if (Result<> written = write_picture_png(one.picture, marks_of(one, arguments, *patient, array), path); !written)
+      if (Result<> written = write_picture_png(one.picture, marks_of(one, arguments, *patient, kind, array), path);
+          !written)
         return written;
     }
     pictures.push_back({{"file", path.string()},
@@ -225,10 +234,9 @@ Command add_image_command(CLI::App& program) {
                   "Scenario (TOML): the patient at rest, without a needle; or the run.h5 of a run")
       ->type_name("SCENARIO.toml|run.h5")
       ->required();
-  app->add_option(
-         "-o,--output", arguments->output,
-         "GreyPicture: .png with a scale, or .mha with its place in the patient; with --all several .png or one "
-         "volume")
+  app->add_option("-o,--output", arguments->output,
+                  "Picture: .png with a scale, or .mha with its place in the patient; with --all several .png or one "
+                  "volume")
       ->type_name("FILE")
       ->required();
   app->add_option("--array", arguments->array, "Array of the probe (default: ultrasound.array of the scenario)")
@@ -240,6 +248,9 @@ Command add_image_command(CLI::App& program) {
   app->add_option("--time", arguments->time_s, "Time of a recorded run in s (default: when the needle was deepest)")
       ->type_name("S")
       ->check(number_between(0, 1e6, "s"));
+  app->add_option("--seeds", arguments->seeds,
+                  "Also show the seeds of this plan at their planned places in the tissue (DICOM RTPLAN, JSON or CSV)")
+      ->type_name("PLAN");
   app->add_flag("--all", arguments->all, "All planes of the stepper through the gland, probe.step_mm apart");
   app->add_flag("--template", arguments->grid, "Draw the template's holes as dots on a transverse picture");
   app->add_option("--pixel", arguments->pixel_mm, "Side of a pixel in mm (default: 0.2)")

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -36,6 +37,8 @@ class EchoMap {
 
   /// Level at a position on the grid; negative outside of the map.
   [[nodiscard]] float at(const Eigen::Vector3f& position) const;
+  /// Level of the mean power at two positions; that of one if the other is outside, negative if both are.
+  [[nodiscard]] float mean_power(const Eigen::Vector3f& a, const Eigen::Vector3f& b) const;
 
  private:
   EchoMap() = default;
@@ -43,6 +46,7 @@ class EchoMap {
   Vec3 low_ = Vec3::Zero();
   Eigen::Vector3i count_ = Eigen::Vector3i::Zero();
   std::vector<std::uint8_t> levels_;
+  std::array<float, 256> above_mean_{};  ///< (difference of two levels) level of their mean power above their mean
 };
 
 }  // namespace stylet

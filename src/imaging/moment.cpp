@@ -12,6 +12,10 @@ ShownNeedle shown_needle(double diameter_mm, std::optional<double> lumen_diamete
   return needle;
 }
 
+void join_to_last(std::vector<ShownSeed>& seeds, bool same_strand) {
+  if (same_strand && !seeds.empty()) seeds.back().next = seeds.size();
+}
+
 Moment moment_at_rest(const TetMesh& mesh) {
   Moment moment;
   moment.displacement = Eigen::Matrix3Xf::Zero(3, mesh.node_count());

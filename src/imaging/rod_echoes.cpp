@@ -62,6 +62,8 @@ RodLook seed_look(double diameter_mm) {
           .shade = 0.25F};
 }
 
+RodLook spacer_look() { return {.level_dB = 11.0F, .rough_dB = -6.0F, .specular_deg = 16.0, .shade = 0.05F}; }
+
 RodLook track_look() { return {.level_dB = 12.0F, .rough_dB = -2.0F, .specular_deg = 30.0}; }
 
 RodEchoes::RodEchoes(int lines, int samples)

@@ -23,6 +23,7 @@ struct RodLook {
 
 RodLook needle_look(double diameter_mm);
 RodLook seed_look(double diameter_mm);
+RodLook spacer_look();  ///< of absorbable polymer between the seeds of a strand: fainter than metal, without a tail
 RodLook track_look();
 
 /// Adds the echoes of rods to a picture.

@@ -10,13 +10,13 @@ namespace stylet {
 
 namespace {
 
-constexpr float kSideLobes = 0.018F;      // −35 dB of the mean amplitude at the same depth
-constexpr float kReverberation = 0.030F;  // −30 dB of what came from less deep, see kMemory_mm
-constexpr double kMemory_mm = 9.0;
+constexpr float kSideLobes = 0.022F;      // −33 dB of the mean amplitude at the same depth
+constexpr float kReverberation = 0.070F;  // −23 dB of what came from less deep, see kMemory_mm
+constexpr double kMemory_mm = 6.0;
 constexpr double kNoise_dB = -54.0;        // of the receiver near the probe
 constexpr double kNoise_dB_per_mm = 0.16;  // its growth by the gain with depth
 constexpr double kRing_mm = 0.62;          // distance of the rings near the transducer
-constexpr double kRings_mm = 1.0;          // depth over which they fall to 1/e
+constexpr double kRings_mm = 0.7;          // depth over which they fall to 1/e
 
 }  // namespace
 

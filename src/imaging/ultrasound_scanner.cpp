@@ -9,6 +9,7 @@
 #include "point_spread.hpp"
 #include "rod_echoes.hpp"
 #include "speckle_lattice.hpp"
+#include "tissue_attenuation.hpp"
 #include "ultrasound_artefacts.hpp"
 
 #include <fmt/format.h>
@@ -24,10 +25,12 @@ namespace stylet {
 
 namespace {
 
-constexpr double kConcretion_dB_per_cm_MHz = 14.0;  // attenuation of concretions, as of bone
-constexpr double kPatch = 0.12;                     // patches of a border are larger than speckle by its inverse
-constexpr float kLargestGain = 3.16F;               // 10 dB: the receiver's limit behind tissue that attenuates less
-constexpr float kLogUnit_dB = 3.0103F;              // 10 log10(2)
+constexpr double kSlicePoint = 0.23;    // standard deviation of the slice's profile, in thicknesses
+constexpr double kPatch = 0.12;         // patches of a border are larger than speckle by its inverse
+constexpr int kRoughParts = 14;         // echoes behind the surface of bone,
+constexpr double kRoughPart_mm = 0.22;  // their distance,
+constexpr float kRoughShare = 0.80F;    // and the amplitude of each, relative to the one before
+constexpr float kLogUnit_dB = 3.0103F;  // 10 log10(2)
 
 float amplitude_of_dB(double dB) { return static_cast<float>(std::pow(10.0, dB / 20.0)); }
 
@@ -64,11 +67,12 @@ struct UltrasoundScanner::Parts {
         shift(mesh_, settings_.lines, settings_.samples),
         spread(profile, settings_.samples),
         field(settings_.lines, settings_.samples),
+        attenuation(settings_.lines, settings_.samples),
         rods(settings_.lines, settings_.samples),
         artefacts(settings_.lines, settings_.samples, static_cast<std::uint32_t>(settings_.random)),
         tets(static_cast<std::size_t>(settings_.lines) * static_cast<std::size_t>(settings_.samples)),
-        gain(tets.size()),
         power(tets.size()),
+        slice_mm(static_cast<std::size_t>(settings_.samples)),
         grey(tets.size()) {
     echoes.assign(echoes_.begin(), echoes_.end());
     for (const std::string& region : mesh.regions) roles.push_back(tissue_role(region));
@@ -84,8 +88,8 @@ struct UltrasoundScanner::Parts {
   void fill_row(int line, int from, int to, float amplitude, const Eigen::Vector3f& p0, const Eigen::Vector3f& dp,
                 const Vec3& x0, const Vec3& dx);
   void note_border(const BeamSpan& span, const Vec3& x0, const Vec3& dx);
-  void attenuate();
   void add_borders();
+  [[nodiscard]] float time_gain_dB(int sample) const;
   void compress();
 
   const TetMesh& mesh;
@@ -101,14 +105,15 @@ struct UltrasoundScanner::Parts {
   MaterialShift shift;
   PointSpread spread;
   EchoField field;
+  TissueAttenuation attenuation;
   RodEchoes rods;
   UltrasoundArtefacts artefacts;
   UltrasoundBeams beams;
   std::vector<BorderHit> hits;
   std::vector<Index> tets;                  ///< (lines × samples) tetrahedron of each sample, or -1
   std::vector<std::uint8_t> is_concretion;  ///< (lines × samples)
-  std::vector<float> gain;                  ///< (lines × samples)
   std::vector<float> power;                 ///< (samples × lines)
+  std::vector<float> slice_mm;              ///< (samples) distance from the plane at which tissue is looked at
   std::vector<std::uint8_t> grey;           ///< (lines × samples)
 };
 
@@ -117,6 +122,8 @@ void UltrasoundScanner::Parts::fill(const Moment& moment) {
   hits.clear();
   std::fill(tets.begin(), tets.end(), Index{-1});
   std::fill(is_concretion.begin(), is_concretion.end(), std::uint8_t{0});
+  for (int s = 0; s < beams.samples; ++s)
+    slice_mm[static_cast<std::size_t>(s)] = static_cast<float>(kSlicePoint * profile.elevation_mm(s * beams.sample_mm));
   slice.place(beams, moment.displacement);
   shift.compute(beams, moment, slice);
   slice.cut(
@@ -152,10 +159,12 @@ void UltrasoundScanner::Parts::fill_row(int line, int from, int to, float amplit
   float* const imaginary = field.imaginary(line);
   const bool shifted = shift.touches(line, from, to);
   const std::size_t first = static_cast<std::size_t>(line) * static_cast<std::size_t>(beams.samples);
+  const Eigen::Vector3f normal = EchoMap::difference(beams.normal());
   const auto level_at = [&](int s) {
     Vec3 x = x0 + s * dx;
     if (shifted) x += shift.at(line, s).cast<double>();
-    return map->at(map->position(x));
+    const Eigen::Vector3f at = map->position(x), beside = slice_mm[static_cast<std::size_t>(s)] * normal;
+    return map->mean_power(at - beside, at + beside);
   };
   Eigen::Vector3f moved = Eigen::Vector3f::Zero(), move = Eigen::Vector3f::Zero();  // on the lattice
   float level = -1.0F, slope = 0.0F;
@@ -206,36 +215,8 @@ void UltrasoundScanner::Parts::note_border(const BeamSpan& span, const Vec3& x0,
                   x0 + span.to_mm * dx});
 }
 
-/// Weakens the echoes by the tissue on their way, and strengthens them by the receiver's gain with depth.
-void UltrasoundScanner::Parts::attenuate() {
-  const double way_cm = 0.2 * beams.sample_mm;  // there and back
-  const auto factor_of = [&](double dB_per_cm_MHz) {
-    return amplitude_of_dB(-(dB_per_cm_MHz - UltrasoundScanner::kCompensated_dB_per_cm_MHz) * profile.frequency_MHz *
-                           way_cm);
-  };
-  std::array<float, 256> factors{};
-  for (std::size_t r = 0; r < echoes.size(); ++r)
-    factors[std::min<std::size_t>(r, 255)] = factor_of(echoes[r].attenuation_dB_per_cm_MHz);
-  const float concretion = factor_of(kConcretion_dB_per_cm_MHz);
-  for (int line = 0; line < beams.lines; ++line) {
-    const std::size_t first = static_cast<std::size_t>(line) * static_cast<std::size_t>(beams.samples);
-    float* const real = field.real(line);
-    float* const imaginary = field.imaginary(line);
-    float passed = 1.0F;
-    for (std::size_t s = 0; s < static_cast<std::size_t>(beams.samples); ++s) {
-      const Index tet = tets[first + s];
-      gain[first + s] = passed;
-      real[s] *= passed;
-      imaginary[s] *= passed;
-      if (tet < 0) continue;
-      const auto region = static_cast<std::size_t>(mesh.tet_region[static_cast<std::size_t>(tet)]);
-      passed *= is_concretion[first + s] != 0 ? concretion : factors[std::min<std::size_t>(region, 255)];
-      passed = std::clamp(passed, 1e-12F, kLargestGain);
-    }
-  }
-}
-
 void UltrasoundScanner::Parts::add_borders() {
+  const std::span<const float> gain = attenuation.gain();
   for (const BorderHit& hit : hits) {
     const double sample = static_cast<double>(hit.depth_mm) / beams.sample_mm;
     const auto at = static_cast<std::size_t>(std::clamp(static_cast<int>(sample), 0, beams.samples - 1));
@@ -246,13 +227,25 @@ void UltrasoundScanner::Parts::add_borders() {
     const double rough = hit.roughness_mm * static_cast<double>(patch.imag()) / beams.sample_mm;
     field.add(hit.line, sample + rough, strength, 0.5F + 0.6F * patch.real(), 0.4F * patch.imag());
     if (hit.roughness_mm < 0.2) continue;
-    // Parts of a rough surface lie deeper, differently from line to line.
-    for (int k = 1; k <= 6; ++k) {
+    // Parts of a rough surface lie deeper, differently from line to line, and echoes are reflected several times before
+    // it.
+    float part_strength = 0.7F * strength;
+    for (int k = 1; k <= kRoughParts; ++k) {
       const std::complex<float> part = lattice.at(lattice.position((1.0 + 0.3 * k) * hit.at));
-      field.add(hit.line, sample + std::abs(rough) + 0.18 * k / beams.sample_mm,
-                0.5F * strength / static_cast<float>(k), part.real(), part.imag());
+      field.add(hit.line, sample + std::abs(rough) + kRoughPart_mm * k / beams.sample_mm, part_strength, part.real(),
+                part.imag());
+      part_strength *= kRoughShare;
     }
   }
+}
+
+/// Gain that is set by hand for the depth of a sample, linear between the values of the settings.
+float UltrasoundScanner::Parts::time_gain_dB(int sample) const {
+  const auto& values = settings.tgc_dB;
+  const double place = static_cast<double>(sample) / (settings.samples - 1) * static_cast<double>(values.size() - 1);
+  const std::size_t low = std::min(static_cast<std::size_t>(place), values.size() - 2);
+  const double share = place - static_cast<double>(low);
+  return static_cast<float>((1.0 - share) * values[low] + share * values[low + 1]);
 }
 
 void UltrasoundScanner::Parts::compress() {
@@ -262,6 +255,7 @@ void UltrasoundScanner::Parts::compress() {
   if (features.artefacts) artefacts.begin();
   const auto n = static_cast<std::size_t>(beams.lines);
   for (int s = 0; s < beams.samples; ++s) {
+    const float gained = offset + time_gain_dB(s);
     float* const row = &power[static_cast<std::size_t>(s) * n];
     float* const real = field.row_real(s);
     float* const imaginary = field.row_imaginary(s);
@@ -269,7 +263,7 @@ void UltrasoundScanner::Parts::compress() {
     if (features.artefacts) artefacts.add(s, s * beams.sample_mm, real, imaginary, row);
     for (std::size_t l = 0; l < n; ++l) {
       const float dB = kLogUnit_dB * quick_log2(std::max(row[l], 1e-20F));
-      const float rounded = std::clamp(scale * (dB + offset) + 0.5F, 0.0F, 255.0F);
+      const float rounded = std::clamp(scale * (dB + gained) + 0.5F, 0.0F, 255.0F);
       grey[l * static_cast<std::size_t>(beams.samples) + static_cast<std::size_t>(s)] =
           static_cast<std::uint8_t>(rounded);
     }
@@ -308,17 +302,24 @@ PolarPicture UltrasoundScanner::scan(const Moment& moment, const UltrasoundBeams
   p.beams = beams;
   p.spread.follow(beams);
   p.fill(moment);
-  p.attenuate();
+  p.attenuation.apply(beams, p.profile.frequency_MHz, p.mesh, p.echoes, p.tets, p.is_concretion, p.field);
   p.add_borders();
   p.rods.clear();
   const auto rod = [&](std::span<const Vec3> line, double diameter_mm, const RodLook& look) {
-    p.rods.add(line, diameter_mm, look, beams, p.profile, p.spread, p.gain, p.field);
+    p.rods.add(line, diameter_mm, look, beams, p.profile, p.spread, p.attenuation.gain(), p.field);
   };
   for (const ShownTrack& track : moment.tracks) rod(track.centreline_mm, track.diameter_mm, track_look());
   for (const ShownSeed& seed : moment.seeds) {
     const std::array<Vec3, 2> ends{seed.centre_mm - 0.5 * seed.length_mm * seed.axis,
                                    seed.centre_mm + 0.5 * seed.length_mm * seed.axis};
     rod(ends, seed.diameter_mm, seed_look(seed.diameter_mm));
+    if (!seed.next || *seed.next >= moment.seeds.size()) continue;
+    const ShownSeed& other = moment.seeds[*seed.next];
+    const Vec3 way = other.centre_mm - seed.centre_mm;
+    const double length = way.norm(), metal = 0.5 * (seed.length_mm + other.length_mm);
+    if (length <= metal) continue;  // the seeds touch
+    const Vec3 from = seed.centre_mm + 0.5 * seed.length_mm / length * way;
+    rod(std::array<Vec3, 2>{from, from + (length - metal) / length * way}, seed.diameter_mm, spacer_look());
   }
   for (const ShownNeedle& needle : moment.needles)
     rod(needle.centreline_mm, needle.diameter_mm, needle_look(needle.diameter_mm));

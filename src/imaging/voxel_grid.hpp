@@ -28,13 +28,26 @@ class VoxelGrid {
   /// Region of a voxel's centre; -1 outside of the mesh.
   [[nodiscard]] int region(std::size_t voxel) const { return regions_[voxel]; }
 
-  /// Distance of each voxel from the nearest voxel whose region is chosen [mm], by steps to the 26 neighbours; exact
-  /// within 8 %.
+  /// Depth of each voxel's centre below the surface of the chosen regions [mm], negative outside of them; between
+  /// −reach and reach. Smooth, and exact within 8 %.
   /// @param chosen gets the region's number, or -1
-  [[nodiscard]] std::vector<float> distance_mm(const std::function<bool(int)>& chosen) const;
+  [[nodiscard]] std::vector<float> depth_mm(const std::function<bool(int)>& chosen, double reach_mm) const;
+
+  /// Smooths a field (voxels) by the weights 1, 2, 1 along each axis, except in regions that are kept.
+  /// @param kept gets the region's number, or -1
+  void smooth(std::vector<float>& field, const std::function<bool(int)>& kept) const;
 
  private:
+  /// Voxels from first to last along each axis.
+  struct Block {
+    Eigen::Vector3i first, last;
+  };
   void fill(const TetMesh& mesh, std::size_t tet);
+  /// Distance of the block's voxels from the nearest one that is 0, by steps to the 26 neighbours. @param field 0 or
+  /// more
+  void spread_distance(std::vector<float>& field, const Block& block) const;
+  template <class Kept>
+  void smooth(std::vector<float>& field, const Block& block, Kept&& kept) const;
 
   Vec3 low_;
   double voxel_mm_;

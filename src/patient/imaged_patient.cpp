@@ -145,10 +145,14 @@ Result<> add_planned_seeds(ImagedPatient& patient, const std::string& file) {
                        "Give a plan of permanent seeds, or leave --seeds out");
   const Topology topology(patient.mesh);
   const Locator locator(patient.mesh, topology);
+  std::string last_needle;
   for (const PlannedSource& source : plan->sources) {
     ShownSeed seed{.centre_mm = source.at_mm, .axis = source.axis};
     if (const auto at = locator.find(source.at_mm))
       seed.centre_mm += displacement_of(patient.mesh, patient.moment.displacement, *at);
+    join_to_last(patient.moment.seeds,
+                 patient.scenario.seed.stranded && !source.needle.empty() && source.needle == last_needle);
+    last_needle = source.needle;
     patient.moment.seeds.push_back(seed);
   }
   return Ok{};

@@ -241,6 +241,7 @@ Result<> ImageMaker::Parts::prepare_scanner(const std::function<void(const std::
   tell("The scanner is being prepared");
   UltrasoundSettings settings = tables.ultrasound;
   settings.gain_dB = 0.0;
+  settings.tgc_dB = {};
   settings.dynamic_range_dB = kImageRange_dB;
   std::vector<TissueEcho> echoes;
   for (const std::string& region : patient.mesh->regions) echoes.push_back(tissue_of(patient.scenario, region).echo);

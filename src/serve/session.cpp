@@ -536,8 +536,11 @@ std::vector<ShownSeed> Session::Parts::shown_seeds() {
   if (!implant) return shown;
   const std::vector<SeedHistory>& dropped = implant->state().seeds;
   const std::vector<Vec3> now = live->seeds().now_mm();
+  std::optional<std::size_t> last_needle;
   for (std::size_t k = 0; k < std::min(now.size(), dropped.size()); ++k) {
     if (dropped[k].lost) continue;
+    join_to_last(shown, planned.scenario.seed.stranded && dropped[k].needle == last_needle);
+    last_needle = dropped[k].needle;
     shown.push_back({now[k], dropped[k].axis, implant->plan().seed_length_mm, implant->plan().seed_diameter_mm});
   }
   return shown;

@@ -57,6 +57,10 @@ void describe_ultrasound(ScenarioEntries& keys) {
               [](auto& s, const ImagingSlot&) { return &s.ultrasound.elevation_mm; });
   keys.number("ultrasound.gain_dB", "dB", -60, 60, "gain",
               [](auto& s, const ImagingSlot&) { return &s.ultrasound.gain_dB; });
+  keys.vector<4>("ultrasound.tgc_dB", "dB", -60, 60,
+                 "time gain compensation: gain at four depths, from the probe's surface to the far end, linear between "
+                 "them, in addition to the gain that compensates the attenuation of soft tissue",
+                 [](auto& s, const ImagingSlot&) { return &s.ultrasound.tgc_dB; });
   keys.number("ultrasound.dynamic_range_dB", "dB", 20, 120, "range of echoes from black to white",
               [](auto& s, const ImagingSlot&) { return &s.ultrasound.dynamic_range_dB; });
   keys.integer("ultrasound.random", 0, 1000000, "seed of the speckle; the same seed gives the same picture",

@@ -103,6 +103,50 @@ TEST(Bone, casts_a_shadow_of_30_dB_or_more_also_with_artefacts) {
   EXPECT_GE(mean_dB(*scanner, 10, 245, 29.8, 30.4, beams.sample_mm), before + 10.0) << "its surface is bright";
 }
 
+TEST(Shadow, of_something_narrow_fills_up_with_depth_since_the_aperture_is_wide) {
+  // Bone of 2.5 mm at a depth of 20 to 25 mm. At 28 mm the aperture, 28 mm over F, sees it over a width of 28 / 2.5 ×
+  // 3 / 28 = 1.2 mm, all of it shaded; at 65 mm over 16 mm, of which a sixth is shaded.
+  TetMesh mesh = box_mesh({-40, 0, -30}, {40, 100, 30}, {32, 20, 6});
+  assign_regions(mesh, {"body", "pubic_arch"},
+                 [](const Vec3& x) { return std::abs(x.x()) < 1.25 && x.y() > 20 && x.y() < 25 ? 1 : 0; });
+  const UltrasoundSettings settings;
+  const UltrasoundBeams beams = block_beams(settings);
+  const std::vector<TissueEcho> echoes{{0.0, kLevel}, default_echo("pubic_arch")};
+  UltrasoundScanner scanner = plain_scanner(mesh, echoes, settings);
+  scanner.scan(moment_at_rest(mesh), beams);
+  const auto shade = [&](int first, int last, double from, double to) {
+    return mean_dB(scanner, 5, 60, from, to, beams.sample_mm) -
+           mean_dB(scanner, first, last, from, to, beams.sample_mm);
+  };
+  EXPECT_GT(shade(126, 129, 30.0, 32.0), 8.0) << "right behind it";
+  EXPECT_LT(shade(126, 129, 63.0, 68.0), 6.0) << "deep behind it";
+  EXPECT_LT(shade(104, 108, 63.0, 68.0), 2.0) << "beside its shadow";
+}
+
+TEST(Gain, by_depth_changes_the_grey_as_set) {
+  const TetMesh mesh = imaged_block();
+  UltrasoundSettings settings;
+  const UltrasoundBeams beams = block_beams(settings);
+  UltrasoundScanner plain = plain_scanner(mesh, {{-10.0, kLevel}}, settings);
+  settings.tgc_dB = {-6.0, 0.0, 3.0, 9.0};
+  UltrasoundScanner set = plain_scanner(mesh, {{-10.0, kLevel}}, settings);
+  const Moment moment = moment_at_rest(mesh);
+  const PolarPicture before = plain.scan(moment, beams), after = set.scan(moment, beams);
+  const auto n = static_cast<std::size_t>(settings.samples);
+  for (const auto& [third, gain_dB] :
+       {std::pair{0.0, -6.0}, {0.5, -3.0}, {1.0, 0.0}, {1.5, 1.5}, {2.0, 3.0}, {3.0, 9.0}}) {
+    const auto sample = static_cast<std::size_t>(std::lround(third / 3.0 * (settings.samples - 1)));
+    int compared = 0;
+    for (std::size_t line = 0; line < 256; ++line) {
+      const int from = before.grey[line * n + sample], to = after.grey[line * n + sample];
+      if (from == 0 || to == 0 || from == 255 || to == 255) continue;
+      EXPECT_NEAR(to - from, gain_dB * 255.0 / settings.dynamic_range_dB, 1.1) << third;
+      ++compared;
+    }
+    EXPECT_GT(compared, 100) << third;
+  }
+}
+
 TEST(Fluid, is_dark_and_what_lies_behind_it_is_brighter) {
   const TetMesh mesh =
       imaged_block({"body", "bladder"}, [](const Vec3& x) { return x.y() > 20 && x.y() < 40 && x.x() > 0 ? 1 : 0; });

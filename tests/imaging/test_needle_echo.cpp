@@ -173,6 +173,29 @@ TEST(SeedEcho, is_a_bright_line_of_its_length_that_fades_with_tilt) {
   EXPECT_LT(peak_at(15.0).first, flat - 4.0);
 }
 
+TEST(StrandEcho, has_spacers_between_its_seeds_that_are_fainter_than_the_seeds) {
+  const TetMesh mesh = imaged_block();
+  const UltrasoundSettings settings;
+  const UltrasoundBeams beams = block_beams(settings);
+  UltrasoundScanner scanner = plain_scanner(mesh, {{0.0, kLevel}}, settings);
+  const auto levels = [&](bool stranded) {
+    Moment moment = moment_at_rest(mesh);
+    moment.seeds.push_back({{-5.0, 30.0, 0.3}, Vec3::UnitX()});
+    join_to_last(moment.seeds, stranded);
+    moment.seeds.push_back({{5.0, 30.0, 0.3}, Vec3::UnitX()});
+    scanner.scan(moment, beams);
+    const auto level = [&](double from_x, double to_x) {
+      const auto line = [&](double x) { return static_cast<int>(std::lround((x - beams.first) / beams.step)); };
+      return test::mean_dB(scanner, line(from_x), line(to_x), 29.2, 29.9, beams.sample_mm);
+    };
+    return std::pair(level(-6.0, -4.0), level(-1.5, 1.5));  // on a seed, and in the middle between both
+  };
+  const auto [seed, spacer] = levels(true);
+  EXPECT_GT(spacer, 3.0) << "brighter than the speckle";
+  EXPECT_LT(spacer, seed - 6.0);
+  EXPECT_LT(levels(false).second, 3.0) << "loose seeds have none";
+}
+
 TEST(TrackEcho, is_brighter_than_the_tissue_and_fainter_than_a_needle) {
   const TetMesh mesh = imaged_block();
   const UltrasoundSettings settings;

@@ -106,6 +106,99 @@ TEST(UltrasoundAnatomy, has_a_transition_zone_that_is_darker_than_the_peripheral
   EXPECT_LT(transition, peripheral - 3.0);
 }
 
+/// A gland of 40 mm in a block of fat with the rectum's wall (y = 90 … 95) and lumen behind it, seen from the lumen.
+struct AnatomyBlock {
+  static constexpr double kLumen_mm = 95.0, kWall_mm = 5.0;
+  AnatomyBlock() {
+    mesh = imaged_block({"periprostatic_fat", "prostate", "rectum", "rectal_lumen", "bladder"}, [](const Vec3& x) {
+      if (x.y() > kLumen_mm) return 3;
+      if (x.y() > kLumen_mm - kWall_mm) return 2;
+      return (x - Vec3(0, 67, 0)).norm() < 20 ? 1 : 0;
+    });
+    for (const std::string& region : mesh.regions) echoes.push_back(default_echo(region));
+  }
+  UltrasoundScanner scanner(const UltrasoundSettings& settings) const {
+    return UltrasoundScanner::create(mesh, echoes, settings, {.anatomy = true, .artefacts = false}).value();
+  }
+  UltrasoundBeams beams(const UltrasoundSettings& settings, double z_mm) const {
+    UltrasoundBeams made = block_beams(settings);
+    made.origin_mm = {0, kLumen_mm, z_mm};
+    made.ahead = -Vec3::UnitY();
+    return made;
+  }
+  TetMesh mesh;
+  std::vector<TissueEcho> echoes;
+};
+
+TEST(UltrasoundAnatomy, has_a_dark_muscle_between_the_bright_layers_of_the_rectal_wall) {
+  const AnatomyBlock block;
+  const UltrasoundSettings settings;
+  UltrasoundScanner scanner = block.scanner(settings);
+  const UltrasoundBeams beams = block.beams(settings, 0.3);
+  scanner.scan(moment_at_rest(block.mesh), beams);
+  const auto layer = [&](double from, double to) {
+    return test::mean_dB(scanner, 20, 235, from * AnatomyBlock::kWall_mm, to * AnatomyBlock::kWall_mm, beams.sample_mm);
+  };
+  const double submucosa = layer(0.28, 0.40), muscle = layer(0.60, 0.78), serosa = layer(0.94, 1.0);
+  EXPECT_LT(muscle, submucosa - 8.0);
+  EXPECT_LT(muscle, serosa - 8.0);
+}
+
+TEST(UltrasoundAnatomy, has_concretions_that_are_bright_and_cast_shadows) {
+  const AnatomyBlock block;
+  UltrasoundSettings settings;
+  int found = 0;
+  double before = 0.0, behind = 0.0, beside = 0.0;
+  for (settings.random = 1; settings.random <= 3; ++settings.random) {
+    UltrasoundScanner scanner = block.scanner(settings);
+    for (double z = -8.0; z <= 8.0; z += 1.0) {
+      const UltrasoundBeams beams = block.beams(settings, z);
+      scanner.scan(moment_at_rest(block.mesh), beams);
+      const auto power = [&](int line, double from_mm, double to_mm) {
+        return std::pow(10.0, 0.1 * test::mean_dB(scanner, line - 1, line + 1, from_mm, to_mm, beams.sample_mm));
+      };
+      for (int line = 100; line <= 156; line += 2) {
+        // The brightest sample of the inner gland, if it is a concretion.
+        int bright = -1;
+        double level = 21.0;  // speckle of soft tissue hardly ever reaches it
+        for (int s = static_cast<int>(12.0 / beams.sample_mm); s < static_cast<int>(28.0 / beams.sample_mm); ++s) {
+          if (scanner.level_dB(line, s) > level) level = scanner.level_dB(line, s), bright = s;
+        }
+        if (bright < 0) continue;
+        const double depth = bright * beams.sample_mm;
+        ++found;
+        before += power(line, depth - 4.0, depth - 2.0);
+        behind += power(line, depth + 3.0, depth + 6.0);
+        beside += 0.5 * (power(line - 40, depth + 3.0, depth + 6.0) + power(line + 40, depth + 3.0, depth + 6.0));
+      }
+    }
+  }
+  ASSERT_GT(found, 10);
+  EXPECT_LT(10.0 * std::log10(behind / before), -5.0);
+  EXPECT_LT(10.0 * std::log10(behind / beside), -4.0);
+}
+
+TEST(UltrasoundAnatomy, of_fluid_near_the_plane_is_grey_since_the_slice_is_thick) {
+  AnatomyBlock block;
+  // Fluid above z = 10, between depths of 15 and 35 mm.
+  const auto fluid = static_cast<int>(block.mesh.regions.size()) - 1;
+  for (std::size_t t = 0; t < block.mesh.tets.size(); ++t) {
+    Vec3 x = Vec3::Zero();
+    for (const Index node : block.mesh.tets[t]) x += 0.25 * block.mesh.nodes[static_cast<std::size_t>(node)];
+    if (x.z() > 10.0 && x.y() > 60.0 && x.y() < 80.0) block.mesh.tet_region[t] = fluid;
+  }
+  const UltrasoundSettings settings;  // a slice of 5 mm at a depth of 30 mm
+  UltrasoundScanner scanner = block.scanner(settings);
+  const auto level_at = [&](double z_mm) {
+    const UltrasoundBeams beams = block.beams(settings, z_mm);
+    scanner.scan(moment_at_rest(block.mesh), beams);
+    return test::mean_dB(scanner, 40, 60, 22.0, 28.0, beams.sample_mm);
+  };
+  const double wall = level_at(8.5);
+  EXPECT_GT(level_at(10.7), wall - 12.0) << "a third of the slice is in the wall";
+  EXPECT_LT(level_at(16.0), wall - 30.0) << "the whole slice is in the fluid";
+}
+
 // --- geometry of the arrays ---------------------------------------------------------------------------------------
 
 ProbePlace place_at(const ProbeSettings& probe) { return probe_place(probe, {{0, 30, -60}, 0.0}); }

@@ -24,7 +24,12 @@ struct ShownSeed {
   Vec3 axis = Vec3::UnitZ();      ///< unit vector
   double length_mm = 4.5;
   double diameter_mm = 0.8;
+  /// Position in Moment::seeds of the next seed of its strand, to which a spacer joins it; empty: none does.
+  std::optional<std::size_t> next = {};
 };
+
+/// Joins a seed that is about to be added to the last one of a list, if both belong to one strand.
+void join_to_last(std::vector<ShownSeed>& seeds, bool same_strand);
 
 /// The way of a needle that has been drawn back: gas and blood in it are bright in ultrasound.
 struct ShownTrack {

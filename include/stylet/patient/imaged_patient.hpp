@@ -39,7 +39,8 @@ Result<ImagedPatient> imaged_patient(const std::string& file, const std::vector<
 /// as it is if no probe presses.
 Moment pressed(const ImagedPatient& patient, const ProbeSettings& settings);
 
-/// Adds the seeds of a plan, each at its planned place in the tissue, which has carried it along.
+/// Adds the seeds of a plan, each at its planned place in the tissue, which has carried it along. With seed.stranded in
+/// the scenario spacers join those of a needle.
 /// @param file of the plan: DICOM RTPLAN, plan JSON or CSV
 /// Errors: those of read_plan(); a plan without seeds that stay.
 Result<> add_planned_seeds(ImagedPatient& patient, const std::string& file);

@@ -50,6 +50,8 @@ struct UltrasoundSettings {
   double focus_mm = 30.0;     ///< from the probe's surface
   double elevation_mm = 5.0;  ///< full thickness of the slice at the focus
   double gain_dB = 0.0;
+  /// Additional gain by depth (time gain compensation), at four depths from the probe's surface to the far end.
+  std::array<double, 4> tgc_dB{0.0, 0.0, 0.0, 0.0};
   double dynamic_range_dB = 60.0;
   int random = 1;  ///< seed of the speckle
   bool operator==(const UltrasoundSettings&) const = default;

@@ -105,11 +105,14 @@ void RecordedMoments::add_track(Moment& moment) const {
 /// The seeds that are in the tissue at that moment, where the tissue has carried them.
 void RecordedMoments::add_seeds(Moment& moment) const {
   const RecordedImplant& implant = *recording_.implant;
+  std::optional<std::size_t> last_needle;
   for (const SeedHistory& seed : implant.seeds_after(implant.acts_until(moment.time_s))) {
     if (seed.lost) continue;
     ShownSeed shown{seed.rest_mm, seed.axis, implant.plan.seed_length_mm, implant.plan.seed_diameter_mm};
     if (const auto at = locator_.find(seed.rest_mm))
       shown.centre_mm += displacement_of(recording_.mesh, moment.displacement, *at);
+    join_to_last(moment.seeds, scenario_ && scenario_->seed.stranded && seed.needle == last_needle);
+    last_needle = seed.needle;
     moment.seeds.push_back(shown);
   }
 }
