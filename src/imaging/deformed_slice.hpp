@@ -17,12 +17,13 @@
 namespace stylet {
 
 /// The part of a line of an ultrasound picture inside one deformed tetrahedron. At the distance r from the probe's
-/// surface the weights of its corners are weights + r · slopes.
+/// surface the weights of its corners are weights + r · slopes, and the undeformed place is undeformed_mm + r · course.
 struct BeamSpan {
   int line = 0;
   Index tet = -1;
   double from_mm = 0.0, to_mm = 0.0;  ///< distances from the probe's surface, from < to
   Vec4 weights, slopes;
+  Vec3 undeformed_mm, course;
   Index behind = -1;    ///< tetrahedron on the other side of the face through which the line leaves, or -1
   bool leaves = false;  ///< whether the line leaves at to_mm through a face, before the picture ends
   double cosine = 0.0;  ///< between the line and the deformed normal of that face
@@ -85,14 +86,20 @@ class DeformedSlice {
     Eigen::Matrix<double, 4, 3> gradients;  // of the weights
     gradients.bottomRows<3>() = inverse;
     gradients.row(0) = -inverse.colwise().sum();
+    Vec4 at_origin = -(gradients * p0);  // weights at the origin of the plane
+    at_origin[0] += 1.0;
+    Eigen::Matrix<double, 3, 4> undeformed;
+    for (int k = 0; k < 4; ++k)
+      undeformed.col(k) = mesh_->nodes[static_cast<std::size_t>(corners[static_cast<std::size_t>(k)])];
+    const Vec3 undeformed_origin = undeformed * at_origin;
+    const Eigen::Matrix<double, 3, 2> courses = undeformed * gradients.leftCols<2>();
     BeamSpan span;
     span.tet = tet;
     const double depth = beams.sample_mm * (beams.samples - 1);
     for (int line = lines.first; line <= lines.last; ++line) {
       const Eigen::Vector2d& start = starts_[static_cast<std::size_t>(line)];
       const Eigen::Vector2d& way = ways_[static_cast<std::size_t>(line)];
-      span.weights = gradients * (Vec3(start.x(), start.y(), 0.0) - p0);
-      span.weights[0] += 1.0;
+      span.weights = at_origin + gradients.leftCols<2>() * start;
       span.slopes = gradients.leftCols<2>() * way;
       double from = 0.0, to = depth;
       int face = -1;
@@ -110,6 +117,8 @@ class DeformedSlice {
         }
       }
       if (!(from < to)) continue;
+      span.undeformed_mm = undeformed_origin + courses * start;
+      span.course = courses * way;
       span.line = line;
       span.from_mm = from;
       span.to_mm = to;

@@ -28,10 +28,7 @@ void MaterialShift::compute(const UltrasoundBeams& beams, const Moment& moment, 
     const int row = span.line / line_step_;
     for (int k = first; k <= last; ++k) {
       const Vec4 weights = span.weights + k * spacing * span.slopes;
-      Vec3 x = Vec3::Zero();
-      const auto& corners = mesh_->tets[static_cast<std::size_t>(span.tet)];
-      for (std::size_t c = 0; c < 4; ++c)
-        x += weights[static_cast<Eigen::Index>(c)] * mesh_->nodes[static_cast<std::size_t>(corners[c])];
+      const Vec3 x = span.undeformed_mm + k * spacing * span.course;
       const Vec3 shift = solve(beams, slice, span.tet, weights, x);
       if (shift.isZero()) continue;
       grid_.col(static_cast<Eigen::Index>(row) * columns_ + k) = shift.cast<float>();
@@ -45,7 +42,7 @@ void MaterialShift::compute(const UltrasoundBeams& beams, const Moment& moment, 
 
 /// Solves X + u(X) = x for the undeformed place X near the one that the mesh gives, by fixed-point iteration.
 Vec3 MaterialShift::solve(const UltrasoundBeams& beams, const DeformedSlice& slice, Index tet, const Vec4& weights,
-                          const Vec3& x) const {
+                          const Vec3& x) {
   if (field_.beside_mesh(tet, weights, x).isZero()) return Vec3::Zero();
   const Eigen::Matrix<double, 3, 4> gradients = barycentric_gradients(*mesh_, tet);
   const Mat3 back = slice.undeformed_by_deformed(beams, tet);

@@ -27,7 +27,7 @@ class MaterialShift {
     int first = 1, last = 0;  ///< columns that differ from zero; first > last: none
   };
   [[nodiscard]] Vec3 solve(const UltrasoundBeams& beams, const DeformedSlice& slice, Index tet, const Vec4& weights,
-                           const Vec3& x) const;
+                           const Vec3& x);
 
   const TetMesh* mesh_;
   NeedleField field_;

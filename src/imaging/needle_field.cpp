@@ -10,7 +10,7 @@ namespace stylet {
 NeedleField::NeedleField(const TetMesh& mesh)
     : mesh_(&mesh),
       nodes_(Eigen::Matrix3Xf::Zero(3, mesh.node_count())),
-      near_(static_cast<std::size_t>(mesh.node_count()), 0) {
+      state_(static_cast<std::size_t>(mesh.node_count()), State::far) {
   forces_.reserve(64);
 }
 
@@ -18,18 +18,24 @@ void NeedleField::set(std::span<const ShownForce> forces) {
   forces_.assign(forces.begin(), forces.end());
   Eigen::AlignedBox3d box;
   for (const ShownForce& force : forces_) box.extend(force.at_mm);
-  for (std::size_t k = 0; k < near_.size(); ++k) {
-    const Vec3& x = mesh_->nodes[k];
-    near_[k] = !forces_.empty() && box.exteriorDistance(x) < kReach_mm ? 1 : 0;
-    const Vec3 u = near_[k] != 0 ? at(x) : Vec3::Zero();
-    nodes_.col(static_cast<Eigen::Index>(k)) = u.cast<float>();
-  }
+  for (std::size_t k = 0; k < state_.size(); ++k)
+    state_[k] = !forces_.empty() && box.exteriorDistance(mesh_->nodes[k]) < kReach_mm ? State::unknown : State::far;
 }
 
 bool NeedleField::reaches(Index tet) const {
   const auto& corners = mesh_->tets[static_cast<std::size_t>(tet)];
   return std::any_of(corners.begin(), corners.end(),
-                     [&](Index node) { return near_[static_cast<std::size_t>(node)] != 0; });
+                     [&](Index node) { return state_[static_cast<std::size_t>(node)] != State::far; });
+}
+
+Vec3 NeedleField::at_node(Index node) {
+  State& state = state_[static_cast<std::size_t>(node)];
+  if (state == State::far) return Vec3::Zero();
+  if (state == State::unknown) {
+    nodes_.col(node) = at(mesh_->nodes[static_cast<std::size_t>(node)]).cast<float>();
+    state = State::known;
+  }
+  return nodes_.col(node).cast<double>();
 }
 
 Vec3 NeedleField::at(const Vec3& x) const {
@@ -47,7 +53,7 @@ Vec3 NeedleField::at(const Vec3& x) const {
   return sum;
 }
 
-Vec3 NeedleField::beside_mesh(Index tet, const Vec4& weights, const Vec3& x) const {
+Vec3 NeedleField::beside_mesh(Index tet, const Vec4& weights, const Vec3& x) {
   Vec3 sum = at(x);
   const auto& corners = mesh_->tets[static_cast<std::size_t>(tet)];
   for (std::size_t k = 0; k < 4; ++k) sum -= weights[static_cast<Eigen::Index>(k)] * at_node(corners[k]);

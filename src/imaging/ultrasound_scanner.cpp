@@ -19,7 +19,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 namespace stylet {
 
@@ -57,7 +56,7 @@ struct BorderHit {
 
 struct UltrasoundScanner::Parts {
   Parts(const TetMesh& mesh_, std::span<const TissueEcho> echoes_, const UltrasoundSettings& settings_,
-        const UltrasoundFeatures& features_)
+        const UltrasoundFeatures& features_, std::shared_ptr<const EchoMap> painted)
       : mesh(mesh_),
         settings(settings_),
         features(features_),
@@ -75,8 +74,9 @@ struct UltrasoundScanner::Parts {
         slice_mm(static_cast<std::size_t>(settings_.samples)),
         grey(tets.size()) {
     echoes.assign(echoes_.begin(), echoes_.end());
+    for (const TissueEcho& echo : echoes) amplitudes.push_back(amplitude_of_dB(echo.echo_dB));
     for (const std::string& region : mesh.regions) roles.push_back(tissue_role(region));
-    if (features.anatomy) map = EchoMap::paint(mesh, echoes, static_cast<std::uint32_t>(settings.random));
+    map = std::move(painted);
     for (std::size_t level = 0; level < of_level.size(); ++level)
       of_level[level] = amplitude_of_dB(EchoMap::kDarkest_dB + EchoMap::kStep_dB * static_cast<double>(level));
     hits.reserve(static_cast<std::size_t>(settings.lines) * 64);
@@ -87,7 +87,7 @@ struct UltrasoundScanner::Parts {
   void fill(const BeamSpan& span);
   void fill_row(int line, int from, int to, float amplitude, const Eigen::Vector3f& p0, const Eigen::Vector3f& dp,
                 const Vec3& x0, const Vec3& dx);
-  void note_border(const BeamSpan& span, const Vec3& x0, const Vec3& dx);
+  void note_border(const BeamSpan& span);
   void add_borders();
   [[nodiscard]] float time_gain_dB(int sample) const;
   void compress();
@@ -97,10 +97,11 @@ struct UltrasoundScanner::Parts {
   UltrasoundFeatures features;
   BeamProfile profile;
   std::vector<TissueEcho> echoes;
+  std::vector<float> amplitudes;  ///< (regions) of their speckle
   std::vector<TissueRole> roles;
   DeformedSlice slice;
   SpeckleLattice lattice;
-  std::optional<EchoMap> map;
+  std::shared_ptr<const EchoMap> map;  ///< null: none
   std::array<float, 256> of_level{};
   MaterialShift shift;
   PointSpread spread;
@@ -132,24 +133,17 @@ void UltrasoundScanner::Parts::fill(const Moment& moment) {
 
 /// Fills the samples of a span with speckle.
 void UltrasoundScanner::Parts::fill(const BeamSpan& span) {
-  const auto& corners = mesh.tets[static_cast<std::size_t>(span.tet)];
-  Vec3 x0 = Vec3::Zero(), dx = Vec3::Zero();
-  for (std::size_t k = 0; k < 4; ++k) {
-    const Vec3& corner = mesh.nodes[static_cast<std::size_t>(corners[k])];
-    x0 += span.weights[static_cast<Eigen::Index>(k)] * corner;
-    dx += span.slopes[static_cast<Eigen::Index>(k)] * corner;
-  }
-  if (span.leaves) note_border(span, x0, dx);
+  if (span.leaves) note_border(span);
   const int from = static_cast<int>(std::ceil(span.from_mm / beams.sample_mm - 1e-7));
   const int to = std::min(beams.samples - 1, static_cast<int>(std::floor(span.to_mm / beams.sample_mm + 1e-7)));
   if (from > to) return;
-  dx *= beams.sample_mm;
+  const Vec3& x0 = span.undeformed_mm;
+  const Vec3 dx = span.course * beams.sample_mm;
   const auto region = static_cast<std::size_t>(mesh.tet_region[static_cast<std::size_t>(span.tet)]);
   const std::size_t line = static_cast<std::size_t>(span.line) * static_cast<std::size_t>(beams.samples);
   std::fill(tets.begin() + static_cast<std::ptrdiff_t>(line) + from,
             tets.begin() + static_cast<std::ptrdiff_t>(line) + to + 1, span.tet);
-  fill_row(span.line, from, to, amplitude_of_dB(echoes[region].echo_dB), lattice.position(x0), lattice.difference(dx),
-           x0, dx);
+  fill_row(span.line, from, to, amplitudes[region], lattice.position(x0), lattice.difference(dx), x0, dx);
 }
 
 void UltrasoundScanner::Parts::fill_row(int line, int from, int to, float amplitude, const Eigen::Vector3f& p0,
@@ -202,7 +196,7 @@ void UltrasoundScanner::Parts::fill_row(int line, int from, int to, float amplit
   }
 }
 
-void UltrasoundScanner::Parts::note_border(const BeamSpan& span, const Vec3& x0, const Vec3& dx) {
+void UltrasoundScanner::Parts::note_border(const BeamSpan& span) {
   if (span.behind < 0 || hits.size() == hits.capacity()) return;
   const int here = mesh.tet_region[static_cast<std::size_t>(span.tet)];
   const int there = mesh.tet_region[static_cast<std::size_t>(span.behind)];
@@ -212,7 +206,7 @@ void UltrasoundScanner::Parts::note_border(const BeamSpan& span, const Vec3& x0,
   const auto facing = static_cast<float>(std::abs(span.cosine));
   hits.push_back({span.line, static_cast<float>(span.to_mm),
                   amplitude_of_dB(echo.level_dB) * std::pow(facing, echo.falloff), echo.roughness_mm,
-                  x0 + span.to_mm * dx});
+                  span.undeformed_mm + span.to_mm * span.course});
 }
 
 void UltrasoundScanner::Parts::add_borders() {
@@ -270,9 +264,10 @@ void UltrasoundScanner::Parts::compress() {
   }
 }
 
-Result<UltrasoundScanner> UltrasoundScanner::create(const TetMesh& mesh, std::span<const TissueEcho> echoes,
-                                                    const UltrasoundSettings& settings,
-                                                    const UltrasoundFeatures& features) {
+namespace {
+
+/// Errors: no scanner can work with these settings.
+Result<> check(const TetMesh& mesh, std::span<const TissueEcho> echoes, const UltrasoundSettings& settings) {
   if (echoes.size() != mesh.regions.size())
     return input_error("ultrasound",
                        fmt::format("{} echoes are given for {} regions", echoes.size(), mesh.regions.size()),
@@ -284,7 +279,29 @@ Result<UltrasoundScanner> UltrasoundScanner::create(const TetMesh& mesh, std::sp
   if (mesh.regions.size() > 255)
     return input_error("ultrasound", fmt::format("the mesh has {} regions", mesh.regions.size()),
                        "Join regions until there are at most 255");
-  return UltrasoundScanner(std::make_unique<Parts>(mesh, echoes, settings, features));
+  return Ok{};
+}
+
+std::shared_ptr<const EchoMap> paint(const TetMesh& mesh, std::span<const TissueEcho> echoes, int random) {
+  auto map = EchoMap::paint(mesh, echoes, static_cast<std::uint32_t>(random));
+  return map ? std::make_shared<const EchoMap>(std::move(*map)) : nullptr;
+}
+
+}  // namespace
+
+Result<UltrasoundScanner> UltrasoundScanner::create(const TetMesh& mesh, std::span<const TissueEcho> echoes,
+                                                    const UltrasoundSettings& settings,
+                                                    const UltrasoundFeatures& features) {
+  if (auto checked = check(mesh, echoes, settings); !checked) return checked.error();
+  auto map = features.anatomy ? paint(mesh, echoes, settings.random) : nullptr;
+  return UltrasoundScanner(std::make_unique<Parts>(mesh, echoes, settings, features, std::move(map)));
+}
+
+Result<UltrasoundScanner> UltrasoundScanner::tuned(const UltrasoundSettings& settings) const {
+  const Parts& p = *parts_;
+  if (settings.random != p.settings.random) return create(p.mesh, p.echoes, settings, p.features);
+  if (auto checked = check(p.mesh, p.echoes, settings); !checked) return checked.error();
+  return UltrasoundScanner(std::make_unique<Parts>(p.mesh, p.echoes, settings, p.features, p.map));
 }
 
 UltrasoundScanner::UltrasoundScanner(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}

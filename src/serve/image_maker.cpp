@@ -152,7 +152,6 @@ void ImageMaker::set(ShownImage shown, const Scenario& tables, bool in_patient) 
   Parts& p = *parts_;
   p.shown = shown;
   p.in_patient = in_patient;
-  if (p.scanner && !(tables.ultrasound == p.tables.ultrasound)) p.scanner.reset();
   if (!(tables.fluoroscopy == p.tables.fluoroscopy)) p.fluoroscope.reset();
   p.tables.probe = tables.probe;
   p.tables.ultrasound = tables.ultrasound;
@@ -237,12 +236,18 @@ Result<> ImageMaker::Parts::prepare_probe(const std::function<void(const std::st
 }
 
 Result<> ImageMaker::Parts::prepare_scanner(const std::function<void(const std::string&)>& tell) {
-  if (scanner) return Ok{};
-  tell("The scanner is being prepared");
   UltrasoundSettings settings = tables.ultrasound;
   settings.gain_dB = 0.0;
   settings.tgc_dB = {};
   settings.dynamic_range_dB = kImageRange_dB;
+  if (scanner) {
+    if (scanner->settings() == settings) return Ok{};
+    auto tuned = scanner->tuned(settings);
+    if (!tuned) return tuned.error();
+    *scanner = std::move(*tuned);
+    return Ok{};
+  }
+  tell("The scanner is being prepared");
   std::vector<TissueEcho> echoes;
   for (const std::string& region : patient.mesh->regions) echoes.push_back(tissue_of(patient.scenario, region).echo);
   auto made = UltrasoundScanner::create(*patient.mesh, echoes, settings);

@@ -7,6 +7,8 @@
 #include "stylet/imaging/scan_conversion.hpp"
 #include "stylet/probe/probe_place.hpp"
 
+#include <algorithm>
+
 namespace stylet {
 namespace {
 
@@ -44,6 +46,30 @@ TEST(UltrasoundPicture, shows_twenty_points_of_deformed_tissue_where_the_mesh_ha
       EXPECT_LT((now - beams.point_mm(line, sample * beams.sample_mm)).norm(), 0.01);
     }
   }
+}
+
+TEST(UltrasoundPicture, of_a_tuned_scanner_is_that_of_a_new_one) {
+  const TetMesh mesh = imaged_block({"periprostatic_fat", "prostate"},
+                                    [](const Vec3& x) { return (x - Vec3(0, 35, 0)).norm() < 20 ? 1 : 0; });
+  const std::vector<TissueEcho> echoes{default_echo("periprostatic_fat"), default_echo("prostate")};
+  auto scanner = UltrasoundScanner::create(mesh, echoes, {});
+  ASSERT_TRUE(scanner.ok());
+  UltrasoundSettings other;
+  other.depth_mm = 50.0;
+  other.focus_mm = 40.0;
+  other.lines = 100;
+  for (const int random : {other.random, other.random + 1}) {
+    other.random = random;
+    auto tuned = scanner->tuned(other);
+    auto fresh = UltrasoundScanner::create(mesh, echoes, other);
+    ASSERT_TRUE(tuned.ok() && fresh.ok());
+    const UltrasoundBeams beams = block_beams(other, true);
+    const Moment moment = moment_at_rest(mesh);
+    const auto a = tuned->scan(moment, beams).grey, b = fresh->scan(moment, beams).grey;
+    EXPECT_TRUE(std::equal(a.begin(), a.end(), b.begin(), b.end()));
+  }
+  other.samples = 1;
+  EXPECT_FALSE(scanner->tuned(other).ok());
 }
 
 TEST(UltrasoundPicture, is_made_without_allocation) {

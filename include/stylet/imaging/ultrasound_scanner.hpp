@@ -53,6 +53,9 @@ class UltrasoundScanner {
   /// Errors: another number of echoes than regions; fewer than 2 lines or samples.
   static Result<UltrasoundScanner> create(const TetMesh& mesh, std::span<const TissueEcho> echoes,
                                           const UltrasoundSettings& settings, const UltrasoundFeatures& features = {});
+  /// A scanner of the same patient with other settings. It shares the anatomy, whose painting takes most of the time of
+  /// create(), unless settings.random differs. Errors: as create().
+  [[nodiscard]] Result<UltrasoundScanner> tuned(const UltrasoundSettings& settings) const;
   ~UltrasoundScanner();
   UltrasoundScanner(UltrasoundScanner&&) noexcept;
   UltrasoundScanner& operator=(UltrasoundScanner&&) noexcept;

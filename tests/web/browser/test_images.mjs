@@ -119,6 +119,19 @@ test('the tip of the needle is found in the picture, and its depth is read to 1 
   await keepPicture(page, 'ultrasound-sagittal');
 });
 
+test('pictures come while the needle moves', async () => {
+  const rates = [];
+  for (let k = 0; k < 14; k++) {
+    await page.keyboard.press(k % 2 === 0 ? 'PageDown' : 'PageUp');
+    await page.waitForTimeout(500);
+    const text = await page.locator('.picture-rate:visible').textContent();
+    if (k > 2) rates.push(Number.parseInt(text, 10) || 0);
+  }
+  rates.sort((a, b) => a - b);
+  console.log(`pictures per second, drawn in software: median ${rates[5]}, ${rates[0]} to ${rates[10]}`);
+  assert.ok(rates[5] >= 1, 'pictures are drawn while the needle moves');
+});
+
 test('the picture follows the needle, and a frozen one does not', async () => {
   await page.keyboard.press('f');
   assert.equal(await page.getByRole('button', { name: /Freeze/ }).getAttribute('aria-pressed'), 'true');

@@ -5,6 +5,7 @@ import { CanvasBox } from '../canvas_box';
 import { holes, type Hole } from '../scene';
 import type { Session } from '../session';
 import type { LiveUltrasound } from './image';
+import { PictureRateLabel } from './picture_rate';
 import { inPatient, inPlane, letters } from './plane_axes';
 import { extent, onLine, ScanConverter, type Tone, type Window } from './scan_converter';
 
@@ -24,6 +25,7 @@ export class UltrasoundView {
   showTruth = false;
   onPointer: (text: string) => void = () => {};
   private readonly converter = new ScanConverter();
+  private readonly rate = new PictureRateLabel();
   private readonly buffer = document.createElement('canvas');
   private pixels: ImageData | null = null;
   private place = { left: 0, top: 0, scale: 1, u: 0, v: 0 };  // of the picture on the canvas [CSS px], CSS px per mm
@@ -33,6 +35,7 @@ export class UltrasoundView {
 
   constructor(root: HTMLElement, private readonly session: Session) {
     this.box = new CanvasBox(root, () => this.draw());
+    root.append(this.rate.element);
     session.on('image', this.box.request);
     session.on('scene', (scene) => {
       this.holes = scene.template ? holes(scene.template) : [];
@@ -117,6 +120,7 @@ export class UltrasoundView {
     this.place = {
       left: box.width / 2, top: (box.height + scale * (top - bottom)) / 2, scale, u: (low + high) / 2, v: bottom,
     };
+    this.rate.drawn(image);
     this.drawPicture(image, low, high, bottom, top, scale);
     this.drawScale(image);
     this.drawLetters(image);

@@ -3,6 +3,7 @@
 import { CanvasBox } from '../canvas_box';
 import type { Session } from '../session';
 import type { LiveXray } from './image';
+import { PictureRateLabel } from './picture_rate';
 
 const SCALE_COLOR = '#9fb4c7';
 const OPAQUE = 0xff000000;
@@ -10,10 +11,12 @@ const OPAQUE = 0xff000000;
 export class XrayView {
   readonly box: CanvasBox;
   private readonly buffer = document.createElement('canvas');
+  private readonly rate = new PictureRateLabel();
   private drawn: LiveXray | null = null;
 
   constructor(root: HTMLElement, private readonly session: Session) {
     this.box = new CanvasBox(root, () => this.draw());
+    root.append(this.rate.element);
     session.on('image', this.box.request);
   }
 
@@ -53,6 +56,7 @@ export class XrayView {
   private fill(image: LiveXray): void {
     if (this.drawn === image) return;
     this.drawn = image;
+    this.rate.drawn(image);
     this.buffer.width = image.columns;
     this.buffer.height = image.rows;
     const paint = this.buffer.getContext('2d');
