@@ -161,23 +161,23 @@ void UltrasoundScanner::Parts::fill_row(int line, int from, int to, float amplit
     return map->mean_power(at - beside, at + beside);
   };
   Eigen::Vector3f moved = Eigen::Vector3f::Zero(), move = Eigen::Vector3f::Zero();  // on the lattice
-  float level = -1.0F, slope = 0.0F;
+  float level = -1.0F, slope = 0.0F;  // of the map at a sample, and from one sample to the next
   float next_level = map ? level_at(from) : -1.0F;
+  int next_look = map ? from : to + 1;
   for (int s = from; s <= to; ++s) {
+    if (s == next_look) {
+      const int then = std::min(s + kLevelStep, to);
+      level = next_level;
+      next_level = level_at(then);
+      slope =
+          next_level >= 0.0F && level >= 0.0F ? (next_level - level) / static_cast<float>(std::max(1, then - s)) : 0.0F;
+      next_look = s + kLevelStep;
+    }
     float share = amplitude;
-    if (map) {
-      if ((s - from) % kLevelStep == 0) {
-        level = next_level;
-        next_level = level_at(std::min(s + kLevelStep, to));
-        slope = next_level >= 0.0F && level >= 0.0F
-                    ? (next_level - level) / static_cast<float>(std::max(1, std::min(kLevelStep, to - s)))
-                    : 0.0F;
-      }
-      if (level >= 0.0F) {
-        const float here = level + slope * static_cast<float>((s - from) % kLevelStep);
-        share = of_level[static_cast<std::size_t>(std::min(255.0F, here + 0.5F))];
-        if (here > EchoMap::kCalcified) is_concretion[first + static_cast<std::size_t>(s)] = 1;
-      }
+    if (level >= 0.0F) {
+      share = of_level[static_cast<std::size_t>(std::min(255.0F, level + 0.5F))];
+      if (level > EchoMap::kCalcified) is_concretion[first + static_cast<std::size_t>(s)] = 1;
+      level += slope;
     }
     Eigen::Vector3f p = p0 + static_cast<float>(s) * dp;
     if (shifted) {
