@@ -45,6 +45,14 @@ float quick_log2(float x) {
 
 }  // namespace
 
+double hand_gain_dB(const UltrasoundSettings& settings, double share) {
+  const auto& values = settings.tgc_dB;
+  const double place = std::clamp(share, 0.0, 1.0) * static_cast<double>(values.size() - 1);
+  const std::size_t low = std::min(static_cast<std::size_t>(place), values.size() - 2);
+  const double next = place - static_cast<double>(low);
+  return settings.gain_dB + (1.0 - next) * values[low] + next * values[low + 1];
+}
+
 /// A place where a line crosses a border between tissues.
 struct BorderHit {
   int line;
@@ -89,7 +97,6 @@ struct UltrasoundScanner::Parts {
                 const Vec3& x0, const Vec3& dx);
   void note_border(const BeamSpan& span);
   void add_borders();
-  [[nodiscard]] float time_gain_dB(int sample) const;
   void compress();
 
   const TetMesh& mesh;
@@ -233,23 +240,14 @@ void UltrasoundScanner::Parts::add_borders() {
   }
 }
 
-/// Gain that is set by hand for the depth of a sample, linear between the values of the settings.
-float UltrasoundScanner::Parts::time_gain_dB(int sample) const {
-  const auto& values = settings.tgc_dB;
-  const double place = static_cast<double>(sample) / (settings.samples - 1) * static_cast<double>(values.size() - 1);
-  const std::size_t low = std::min(static_cast<std::size_t>(place), values.size() - 2);
-  const double share = place - static_cast<double>(low);
-  return static_cast<float>((1.0 - share) * values[low] + share * values[low + 1]);
-}
-
 void UltrasoundScanner::Parts::compress() {
   const auto range = static_cast<float>(settings.dynamic_range_dB);
   const float scale = 255.0F / range;
-  const float offset = static_cast<float>(settings.gain_dB) + range - static_cast<float>(kWhite_dB);
   if (features.artefacts) artefacts.begin();
   const auto n = static_cast<std::size_t>(beams.lines);
   for (int s = 0; s < beams.samples; ++s) {
-    const float gained = offset + time_gain_dB(s);
+    const double share = static_cast<double>(s) / (beams.samples - 1);
+    const auto gained = range + static_cast<float>(hand_gain_dB(settings, share) - kWhite_dB);
     float* const row = &power[static_cast<std::size_t>(s) * n];
     float* const real = field.row_real(s);
     float* const imaginary = field.row_imaginary(s);

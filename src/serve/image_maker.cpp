@@ -201,17 +201,20 @@ Result<ProbeSeat> ImageMaker::seat() {
   return *parts_->seat;
 }
 
-/// Scan conversion of a picture of the range kImageRange_dB, with the gain and the dynamic range of the scenario.
+/// Scan conversion of a picture of the range kImageRange_dB, with the gains and the dynamic range of the scenario.
 std::shared_ptr<const GreyPicture> ImageMaker::Parts::converted(const PolarPicture& picture) {
-  std::array<std::uint8_t, 256> shade{};
-  for (std::size_t value = 0; value < shade.size(); ++value) {
-    const double dB = kImageRange_dB * (static_cast<double>(value) / 255.0 - 1.0) + tables.ultrasound.gain_dB;
-    const double share = std::clamp(1.0 + dB / tables.ultrasound.dynamic_range_dB, 0.0, 1.0);
-    shade[value] = static_cast<std::uint8_t>(std::lround(255.0 * share));
-  }
+  const UltrasoundSettings& settings = tables.ultrasound;
+  const auto samples = static_cast<std::size_t>(picture.beams.samples);
+  const auto scale = static_cast<float>(kImageRange_dB / settings.dynamic_range_dB);
   grey.resize(picture.grey.size());
-  std::transform(picture.grey.begin(), picture.grey.end(), grey.begin(),
-                 [&](std::uint8_t value) { return shade[value]; });
+  for (std::size_t s = 0; s < samples; ++s) {
+    const double gain_dB = hand_gain_dB(settings, static_cast<double>(s) / static_cast<double>(samples - 1));
+    const auto offset =
+        static_cast<float>(255.0 * (1.0 + (gain_dB - kImageRange_dB) / settings.dynamic_range_dB) + 0.5);  // rounds
+    for (std::size_t k = s; k < grey.size(); k += samples)
+      grey[k] =
+          static_cast<std::uint8_t>(std::clamp(scale * static_cast<float>(picture.grey[k]) + offset, 0.0F, 255.0F));
+  }
   auto made = std::make_shared<GreyPicture>(conversion.convert({picture.beams, grey}));
   made->time_s = moment.time_s;
   return made;

@@ -41,6 +41,10 @@ struct BeamProfile {
   [[nodiscard]] double elevation_mm(double depth_mm) const;
 };
 
+/// Gain of the receiver that is set by hand [dB]: gain_dB, and tgc_dB, which is linear between its depths.
+/// @param share of the picture's depth, 0 at the probe … 1
+[[nodiscard]] double hand_gain_dB(const UltrasoundSettings& settings, double share);
+
 /// Makes B-mode pictures of the deformed patient.
 ///
 /// The deformed mesh is cut by the plane of the picture; each sample is traced back to its material point, where the
