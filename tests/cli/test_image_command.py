@@ -4,6 +4,7 @@
 import re
 import tempfile
 import unittest
+import zlib
 from pathlib import Path
 
 from program import InFolder, run
@@ -86,6 +87,20 @@ class Image(InFolder):
         self.assertIsNone(drawn["probe"], "contours that were drawn with the probe there are not moved")
         self.assertNotEqual((self.folder / "drawn.mha").read_bytes(), (self.folder / "pressed.mha").read_bytes())
         self.assertIsNone(self.json_of("image", self.recording, "-o", "none.mha")["probe"])
+
+    def test_seeds_of_a_plan_are_bright(self):
+        plan = DEMO.parent / "demo_plan.csv"
+        without = self.json_of("image", DEMO, *COARSE, "-o", "without.mha")
+        seeded = self.json_of("image", DEMO, *COARSE, "--seeds", plan, "-o", "seeded.mha")
+        trains = [line.split(",")[2] for line in plan.read_text().splitlines() if re.match(r"[A-Za-z][\d.]+,", line)]
+        self.assertEqual((without["seeds"], seeded["seeds"]), (0, sum(train.count("S") for train in trains)))
+        grey = [zlib.decompress((self.folder / name).read_bytes().split(b"ElementDataFile = LOCAL\n", 1)[1])
+                for name in ("without.mha", "seeded.mha")]
+        brighter = sum(new > old + 60 for old, new in zip(*grey))
+        darker = sum(new < old - 60 for old, new in zip(*grey))
+        self.assertGreater(brighter, 20, "seeds are bright")
+        self.assertGreater(brighter, 2 * darker)
+        self.refuse("image", DEMO, "--seeds", "missing.csv", "-o", "us.png", says=["missing.csv"])
 
     def test_bad_input_is_refused(self):
         self.refuse("image", DEMO, "-o", "us.jpg", says=["us.jpg", ".png or .mha"])
