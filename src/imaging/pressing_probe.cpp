@@ -27,7 +27,7 @@ Result<PressingProbe> PressingProbe::prepare(const Scenario& scenario, TetMesh m
 }
 
 ProbePress PressingProbe::press(const ProbeSettings& settings, Moment& moment) {
-  const ProbePress press = probe_.press(settings);
+  ProbePress press = probe_.press(settings);
   Eigen::Matrix3Xf moved(3, moment.displacement.cols());
   probe_.contact().displacement(moved);
   const auto move = [&](Vec3& x) {
