@@ -101,7 +101,7 @@ TEST(CompanionImages, come_while_it_wants_them_and_the_pages_look_at_none) {
   EXPECT_TRUE(at.shows(*image.probe));
   EXPECT_GT(*std::max_element(image.in_patient->pixels.begin(), image.in_patient->pixels.end()), 100);
   EXPECT_GT(image.in_patient->time_s, 0.0);
-  // What a page looks at, it gets as well.
+  // The companion also gets the pictures that a page looks at.
   page.command(R"({"do":"image","show":"xray"})");
   ASSERT_TRUE(page.until([&] {
     const auto now = at.onlooker->image();
