@@ -305,4 +305,16 @@ Mat3 SpreadCompliance::operator()(const Place& at, const Place& on) const {
   return sum;
 }
 
+void SpreadCompliance::press(const Place& on, MatX& under) const {
+  const auto per_force_on = [&](std::size_t l) { return matrix_.middleCols<3>(3 * Eigen::Index{on.sample[l]}); };
+  under = on.weight[0] * per_force_on(0) + on.weight[1] * per_force_on(1) + on.weight[2] * per_force_on(2) +
+          on.weight[3] * per_force_on(3);
+}
+
+Mat3 SpreadCompliance::at(const Place& place, const MatX& under) {
+  Mat3 sum = Mat3::Zero();
+  for (std::size_t k = 0; k < 4; ++k) sum += place.weight[k] * under.middleRows<3>(3 * Eigen::Index{place.sample[k]});
+  return sum;
+}
+
 }  // namespace stylet

@@ -62,6 +62,13 @@ class SpreadCompliance {
   /// F [mm/N] between two places, each on a way: displacement at `at` per force at `on`. Does not allocate.
   [[nodiscard]] Mat3 operator()(const Place& at, const Place& on) const;
 
+  /// Displacements of all samples per force at one place, for F between this place and many others: at() interpolates
+  /// between them with a quarter of the products of operator(). Neither allocates, unless the size changes.
+  /// @param under (3 samples × 3) [mm/N] overwritten
+  void press(const Place& on, MatX& under) const;
+  /// F [mm/N]: displacement at a place per the force that `under` is for.
+  [[nodiscard]] static Mat3 at(const Place& place, const MatX& under);
+
   /// M [mm/N] (3 samples × 3 samples); samples are ordered by way, and along each way from the skin inwards. The block
   /// of a way does not depend on which others are planned.
   [[nodiscard]] const MatX& matrix() const { return matrix_; }

@@ -50,6 +50,7 @@ NearFieldCompliance::NearFieldCompliance(std::unique_ptr<ContactCompliance> far,
   if (creeps || std::any_of(region_stiffening_MPa_.begin(), region_stiffening_MPa_.end(),
                             [](double stiffening) { return stiffening > 0.0; }))
     wide_ = A_;
+  if (ground_.spread) spread_under_tip_ = MatX::Zero(ground_.spread->matrix().rows(), 3);
   reset();
 }
 
@@ -117,6 +118,13 @@ void NearFieldCompliance::forget_tip_node(int number, int first_point, int last_
   std::fill(at(first_point), at(last_point), char{0});
 }
 
+Mat3 NearFieldCompliance::spread_between(int point, int other) const {
+  const SpreadCompliance::Place& at = places_[static_cast<std::size_t>(point)].spread;
+  const SpreadCompliance::Place& on = places_[static_cast<std::size_t>(other)].spread;
+  if (point == kTip) return SpreadCompliance::at(on, spread_under_tip_).transpose();
+  return (*ground_.spread)(at, on);
+}
+
 template <class OfMesh>
 void NearFieldCompliance::write_block(int point, int other, const OfMesh& g) {
   const NearPlace& at = places_[static_cast<std::size_t>(point)];
@@ -124,7 +132,7 @@ void NearFieldCompliance::write_block(int point, int other, const OfMesh& g) {
   const double share = spread_share(at, on);
   Mat3 block = Mat3::Zero();
   if (share < 1.0) block += (1.0 - share) * ((*far_)(point, other) + near_correction(*ground_.kernel, at, on, g));
-  if (share > 0.0) block += share * ((*ground_.spread)(at.spread, on.spread) + narrow_part(*ground_.kernel, at, on));
+  if (share > 0.0) block += share * (spread_between(point, other) + narrow_part(*ground_.kernel, at, on));
   write_symmetric(A_, point, other, block);
 }
 
@@ -141,7 +149,7 @@ void NearFieldCompliance::write_wide_block(int point, int other, const OfMesh& g
         std::sqrt(softness_[static_cast<std::size_t>(point)] * softness_[static_cast<std::size_t>(other)]);
     block += (1.0 - share) * ((*far_)(point, other) + soft * wide_correction(*ground_.kernel, at, on, g));
   }
-  if (share > 0.0) block += share * (*ground_.spread)(at.spread, on.spread);
+  if (share > 0.0) block += share * spread_between(point, other);
   write_symmetric(wide_, point, other, block);
 }
 
@@ -153,7 +161,7 @@ void NearFieldCompliance::write_wide_of_tip() {
   Mat3 own = Mat3::Zero();
   if (share < 1.0)
     own += (1.0 - share) * (far + softness_.front() * tip_wide_correction(*ground_.kernel, tip, tip.mesh_kernel));
-  if (share > 0.0) own += share * (*ground_.spread)(tip.spread, tip.spread);
+  if (share > 0.0) own += share * spread_between(kTip, kTip);
   write_symmetric(wide_, kTip, kTip, own);
   for (int d = 1; d < points_; ++d) write_wide_block(kTip, d, [&](int medium) { return of_mesh_at_tip(d, medium); });
   wide_at_ = tip.piece.centre;
@@ -200,6 +208,7 @@ bool NearFieldCompliance::move_tip(const MaterialPoint& at, const Vec3& x) {
   tip = near_place(*ground_.tissue, *ground_.kernel, at, x);
   take_tip_radii(needle_, *ground_.kernel, tip);
   tip.spread = spread_place(x, tip.edge);
+  if (tip.spread.known > 0.0) ground_.spread->press(tip.spread, spread_under_tip_);
   if (at.tet != tip_tet_) {
     for (const int number : tip_element_.enter(tip.shape)) forget_tip_node(number, 0, capacity_);
     tip_tet_ = at.tet;
@@ -207,7 +216,7 @@ bool NearFieldCompliance::move_tip(const MaterialPoint& at, const Vec3& x) {
   const double share = spread_share(tip, tip);
   Mat3 own = Mat3::Zero();
   if (share < 1.0) own += (1.0 - share) * ((*far_)(kTip, kTip) + tip_correction(*ground_.kernel, tip, tip.mesh_kernel));
-  if (share > 0.0) own += share * ((*ground_.spread)(tip.spread, tip.spread) + tip_narrow_part(*ground_.kernel, tip));
+  if (share > 0.0) own += share * (spread_between(kTip, kTip) + tip_narrow_part(*ground_.kernel, tip));
   write_symmetric(A_, kTip, kTip, own);
   for (int d = 1; d < points_; ++d) write_block(kTip, d, [&](int medium) { return of_mesh_at_tip(d, medium); });
   if (knows_wide() && (!wide_at_ || (x - *wide_at_).squaredNorm() > kWideReach_mm * kWideReach_mm)) write_wide_of_tip();

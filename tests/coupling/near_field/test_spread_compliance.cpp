@@ -66,12 +66,17 @@ TEST_P(PlacesOnWays, have_a_positive_compliance_on_one_way_and_on_both) {
       const int way = on_one_way ? trial % 3 : either(random);
       places.push_back(block.spread->place({aside(random), aside(random), along(random)}, way));
     }
-    MatX F(3 * count, 3 * count);
-    for (int i = 0; i < count; ++i) {
-      for (int j = 0; j < count; ++j)
-        F.block<3, 3>(3 * i, 3 * j) =
-            (*block.spread)(places[static_cast<std::size_t>(i)], places[static_cast<std::size_t>(j)]);
+    MatX F(3 * count, 3 * count), pressed(3 * count, 3 * count), under;
+    for (int j = 0; j < count; ++j) {
+      const SpreadCompliance::Place& on = places[static_cast<std::size_t>(j)];
+      block.spread->press(on, under);
+      for (int i = 0; i < count; ++i) {
+        const SpreadCompliance::Place& at = places[static_cast<std::size_t>(i)];
+        F.block<3, 3>(3 * i, 3 * j) = (*block.spread)(at, on);
+        pressed.block<3, 3>(3 * i, 3 * j) = SpreadCompliance::at(at, under);
+      }
     }
+    EXPECT_LT((pressed - F).norm(), 1e-12 * F.norm());
     const Eigen::SelfAdjointEigenSolver<MatX> eigen(F);
     EXPECT_LT((F - F.transpose()).norm(), 1e-12 * F.norm());
     EXPECT_GT(eigen.eigenvalues()[0], -(on_one_way ? 1e-12 : allowed) * F.norm());

@@ -78,6 +78,8 @@ class NearFieldCompliance final : public ContactCompliance {
   [[nodiscard]] double spread_share(const NearPlace& at, const NearPlace& on) const {
     return ground_.spread ? at.spread.known * on.spread.known : 0.0;
   }
+  /// F between two points that are near a path.
+  [[nodiscard]] Mat3 spread_between(int point, int other) const;
   void write_wide_of_tip();
   [[nodiscard]] std::size_t tip_node_entry(int number, int point, int medium) const {
     return static_cast<std::size_t>((number * capacity_ + point) * ground_.kernel->media() + medium);
@@ -96,6 +98,7 @@ class NearFieldCompliance final : public ContactCompliance {
   } ground_;
   NeedleKernel needle_;
   std::vector<double> region_stiffening_MPa_;  ///< (regions), or empty
+  MatX spread_under_tip_;                      ///< SpreadCompliance::press() by the tip, when it is near a path
   double press_N_ = 0.0;                       ///< force at which the surface of the entry broke
   Vec3 entry_ = Vec3::Zero();                  ///< direction of the needle at the entry, LPS
   std::vector<NearPlace> places_;              ///< (points)
