@@ -65,6 +65,7 @@ std::string dose_text(const ImplantOutcome& outcome) {
   for (const OtherImplant& other : outcome.spans) others.push_back(&other);
   for (const OtherImplant* other : others) head.push_back(other->name);
   head.insert(head.end(), {"delivered", ""});
+  if (outcome.probe_out) head.insert(head.end(), {"probe out", ""});
   if (outcome.found) head.insert(head.end(), {"found", ""});
   Table table(head);
   for (std::size_t k = 0; k < outcome.delivered.goals.size(); ++k) {
@@ -79,6 +80,7 @@ std::string dose_text(const ImplantOutcome& outcome) {
       row.emplace_back(!goal.value ? "not judged" : goal.met ? "met" : "MISSED");
     };
     judged(delivered);
+    if (outcome.probe_out) judged(outcome.probe_out->goals[k]);
     if (outcome.found) judged(outcome.found->dose.goals[k]);
     table.row(row);
   }
@@ -204,6 +206,11 @@ Result<> run_implant(const ImplantArguments& arguments, Console& console) {
                   temporary ? "dwell positions" : "seeds") +
       errors_text(*outcome));
   console.say("Why\n" + causes_text(*outcome));
+  if (outcome->probe) {
+    std::string facts = "Probe";
+    for (const ProbeFact& fact : probe_facts(*outcome->probe)) facts += fmt::format("\n{}: {}", fact.name, fact.text);
+    console.say(facts);
+  }
   if (outcome->found) say_found(outcome->history, *outcome->found, console);
   if (!outcome->delivered.goals.empty()) console.say(dose_text(*outcome));
   if (temporary) console.say("Dose\n" + target_text(*outcome));

@@ -18,6 +18,11 @@ Vec3 displacement_of(const TetMesh& mesh, const NodalDisplacement& displacement,
   return u;
 }
 
+Vec3 displaced_place(const Locator& locator, const NodalDisplacement& displacement, const Vec3& x) {
+  const auto at = locator.find(x);
+  return at ? Vec3(x + displacement_of(locator.mesh(), displacement, *at)) : x;
+}
+
 Vec3 undeformed(const Locator& locator, const NodalDisplacement& displacement, const Vec3& x) {
   Vec3 at = x;
   for (int k = 0; k < kUndeformedRounds; ++k) {

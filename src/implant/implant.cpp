@@ -81,6 +81,8 @@ const char* to_string(SeedCause cause) {
       return "release";
     case SeedCause::aim:
       return "aim";
+    case SeedCause::probe:
+      return "probe";
     case SeedCause::wait:
       return "planning to delivery";
   }

@@ -75,8 +75,8 @@ std::vector<PartErrors> errors_by_third(const ImplantHistory& history) {
 std::vector<SeedCause> causes_of(Implant implant) {
   if (implant == Implant::temporary)
     return {SeedCause::bend, SeedCause::motion, SeedCause::relaxation, SeedCause::wait};
-  return {SeedCause::bend,   SeedCause::motion,  SeedCause::relaxation,
-          SeedCause::strand, SeedCause::release, SeedCause::aim};
+  return {SeedCause::bend,    SeedCause::motion, SeedCause::relaxation, SeedCause::strand,
+          SeedCause::release, SeedCause::aim,    SeedCause::probe};
 }
 
 ImplantHistory history_at_planning(const ImplantHistory& history) {

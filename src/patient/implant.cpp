@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/patient/implant.hpp"
 
+#include "implant_probe.hpp"
 #include "stylet/dose/evaluate.hpp"
 #include "stylet/implant/compensation.hpp"
+#include "stylet/implant/displaced_tissue.hpp"
 #include "stylet/io/found_seeds_io.hpp"
 #include "stylet/patient/implant_plan.hpp"
 #include "stylet/patient/patient_mesh.hpp"
@@ -105,6 +107,38 @@ Result<> check_temporary_settings(const ImplantSettings& settings, const DosePla
   return Ok{};
 }
 
+/// The dose once the probe is out, where the contours were drawn with the probe in place: gland and seeds go back.
+Result<std::optional<DoseEvaluation>> dose_without_probe(const ImplantPlan& of, const DosePlan& delivered,
+                                                         const std::optional<ImplantProbe>& probe,
+                                                         const Progress& progress) {
+  if (!probe || !probe->report.settings.in_contours) return std::optional<DoseEvaluation>();
+  const Locator& locator = *probe->patient.locator;
+  std::vector<DoseStructure> structures;
+  for (const DoseStructure& structure : of.structures.structures)
+    structures.push_back(displaced(locator, probe->out, structure));
+  DoseOptions options = of.options;  // only histograms and goals are shown, which do not need the grid
+  options.grid_step_mm *= kGridNotShown;
+  Result<DoseEvaluation> dose = evaluate_dose(displaced(locator, probe->out, of.source.outer_length_mm, delivered),
+                                              of.source, structures, options, progress);
+  if (!dose) return dose.error();
+  return std::optional<DoseEvaluation>(*std::move(dose));
+}
+
+/// What a user has to know about the probe of the scenario.
+std::vector<std::string> probe_warnings(const Scenario& scenario, const ImplantPlan& of, bool found) {
+  if (scenario.probe.kind == ProbeKind::none) return {};
+  if (of.plan.implant == Implant::temporary)
+    return {
+        "The probe of the scenario does not move the dwell positions: it is taken to be out when the images of the "
+        "plan are taken and at the delivery."};
+  if (found && scenario.probe.in_contours)
+    return {
+        "The seeds found on images are compared with those in the contours, which were drawn with the probe in "
+        "place. If the images were taken without a probe, part of the difference is the way that gland and seeds "
+        "go when the probe is taken out."};
+  return {};
+}
+
 void append(std::vector<std::string>& all, const std::vector<std::string>& more) {
   all.insert(all.end(), more.begin(), more.end());
 }
@@ -145,13 +179,25 @@ Result<ImplantOutcome> implant(const Scenario& scenario, const std::string& wher
 
   Result<MeshedAnatomy> patient = mesh_patient(scenario, progress);
   if (!patient) return patient.error();
-  const auto simulate = [&](const Scenario& s, const std::vector<NeedleLoad>& loads) {
-    return simulate_implant(s, patient->mesh, loads, outcome.seed_length_mm, where, progress);
+  // The needles go through the tissue as it is in the contours; the displacement by the probe comes on top of theirs.
+  const auto probe_in = [&](const Scenario& s) -> Result<std::optional<ImplantProbe>> {
+    if (of.plan.implant == Implant::temporary) return std::optional<ImplantProbe>();
+    return implant_probe(s, patient->mesh, where, progress);
+  };
+  Result<std::optional<ImplantProbe>> probe = probe_in(scenario);
+  if (!probe) return probe.error();
+  if (*probe) outcome.probe = (*probe)->report;
+  const auto simulate = [&](const Scenario& s, const std::optional<ImplantProbe>& pressing,
+                            const std::vector<NeedleLoad>& loads) {
+    Result<ImplantHistory> history = simulate_implant(s, patient->mesh, loads, outcome.seed_length_mm, where, progress);
+    if (history && pressing && !s.probe.in_contours)
+      let_tissue_go_back(*pressing->patient.locator, pressing->in, outcome.seed_length_mm, history->seeds);
+    return history;
   };
   std::vector<NeedleLoad> aimed = of.needles;
   if (settings.compensate > 0) {
     auto done = compensate(of.needles, settings.compensate,
-                           [&](const std::vector<NeedleLoad>& loads) { return simulate(scenario, loads); });
+                           [&](const std::vector<NeedleLoad>& loads) { return simulate(scenario, *probe, loads); });
     if (!done) return done.error();
     auto before = dose_of(done->before);
     if (!before) return before.error();
@@ -159,13 +205,16 @@ Result<ImplantOutcome> implant(const Scenario& scenario, const std::string& wher
     outcome.history = std::move(done->after);
     aimed = std::move(done->needles);
   } else {
-    Result<ImplantHistory> history = simulate(scenario, aimed);
+    Result<ImplantHistory> history = simulate(scenario, *probe, aimed);
     if (!history) return history.error();
     outcome.history = *std::move(history);
   }
   Result<DoseEvaluation> dose = dose_of(outcome.history);
   if (!dose) return dose.error();
   outcome.delivered = *std::move(dose);
+  Result<std::optional<DoseEvaluation>> probe_out = dose_without_probe(of, outcome.delivered.plan, *probe, progress);
+  if (!probe_out) return probe_out.error();
+  outcome.probe_out = *std::move(probe_out);
   Result<std::optional<DoseCourse>> oedema = course_of_oedema(of, outcome.delivered.plan);
   if (!oedema) return oedema.error();
   outcome.oedema = *std::move(oedema);
@@ -183,7 +232,9 @@ Result<ImplantOutcome> implant(const Scenario& scenario, const std::string& wher
     if (!settings.span) break;
     Scenario other = scenario;
     other.tissue_model.preset = preset;
-    Result<ImplantHistory> history = simulate(other, aimed);
+    const Result<std::optional<ImplantProbe>> other_probe = probe_in(other);
+    if (!other_probe) return other_probe.error();
+    Result<ImplantHistory> history = simulate(other, *other_probe, aimed);
     if (!history) return history.error();
     Result<DoseEvaluation> delivered = dose_of(*history);
     if (!delivered) return delivered.error();
@@ -216,6 +267,7 @@ Result<ImplantOutcome> implant(const Scenario& scenario, const std::string& wher
   append(outcome.warnings, of.plan.notes);
   append(outcome.warnings, of.structures.notes);
   append(outcome.warnings, patient->report.notes);
+  append(outcome.warnings, probe_warnings(scenario, of, outcome.found.has_value()));
   append(outcome.warnings, outcome.history.warnings);
   append(outcome.warnings, outcome.delivered.warnings);
   return outcome;

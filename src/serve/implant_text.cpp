@@ -81,8 +81,9 @@ ImplantJson error_json(std::span<const SeedHistory> seeds) {
 ImplantJson causes_json(std::span<const SeedHistory> seeds) {
   ImplantJson rows = ImplantJson::array();
   for (const CauseOfErrors& of : causes_of_errors(seeds)) {
-    const bool is_of_fate = of.cause == SeedCause::strand || of.cause == SeedCause::release;
-    if (is_of_fate && of.mean_mm == 0.0) continue;  // the scenario has no strands, or no jumps
+    const bool may_be_absent =
+        of.cause == SeedCause::strand || of.cause == SeedCause::release || of.cause == SeedCause::probe;
+    if (may_be_absent && of.mean_mm == 0.0) continue;  // no strands, no jumps, or no probe that displaces the tissue
     rows.push_back({{"cause", word_of(of.cause)},
                     {"mean_mm", number_json(of.mean_mm)},
                     {"mean_xyz_mm", place_json(of.mean_vector_mm)}});

@@ -19,11 +19,12 @@ enum class SeedCause {
   strand,      ///< the strand holds the seed at its distance from the others
   release,     ///< the seed jumped along its track when it was let go
   aim,         ///< its needle was aimed beside the plan on purpose, to make up for the others
-  wait         ///< tissue and catheter moved against each other between planning and delivery (temporary implants)
+  probe,  ///< the probe displaced the tissue when the seed was dropped, and the contours of the plan are without it
+  wait    ///< tissue and catheter moved against each other between planning and delivery (temporary implants)
 };
-inline constexpr std::size_t kSeedCauses = 6;  ///< those of a seed of a permanent implant, the first ones
-inline constexpr std::size_t kAllCauses = 7;
-/// "needle bend", "tissue motion", "tissue relaxation", "strand", "release", "aim", "planning to delivery"
+inline constexpr std::size_t kSeedCauses = 7;  ///< those of a seed of a permanent implant, the first ones
+inline constexpr std::size_t kAllCauses = 8;
+/// "needle bend", "tissue motion", "tissue relaxation", "strand", "release", "aim", "probe", "planning to delivery"
 const char* to_string(SeedCause cause);
 
 /// A dwell position when the images of the plan are taken, with all catheters in place.
@@ -48,7 +49,7 @@ struct SeedHistory {
   bool in_tissue = true;                       ///< whether the tissue point where it was dropped could be found
   std::optional<DwellAtPlanning> at_planning;  ///< of a dwell position; empty for a seed
   std::array<Vec3, kAllCauses> cause_mm{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero(),
-                                        Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+                                        Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
 
   /// Whether both are the same drop, wherever they rest. A seed that is taken back and dropped again is another one.
   [[nodiscard]] bool is_same_drop(const SeedHistory& other) const {

@@ -5,6 +5,7 @@
 #include "stylet/dose/dose_evaluation.hpp"
 #include "stylet/dose/dose_over_time.hpp"
 #include "stylet/implant/found_errors.hpp"
+#include "stylet/probe/patient_probe.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -35,6 +36,10 @@ struct ImplantOutcome {
   ImplantHistory history;
   DoseEvaluation planned;            ///< dose of the plan
   DoseEvaluation delivered;          ///< dose of the seeds where they have come to rest
+  std::optional<ProbeReport> probe;  ///< that pressed while seeds were dropped; empty: none did
+  /// Dose of the same seeds to the same tissue once the probe is out, where the contours were drawn with the probe in
+  /// place. Otherwise the delivered dose is that without a probe.
+  std::optional<DoseEvaluation> probe_out;
   std::optional<DoseCourse> oedema;  ///< D90 of the target over time, where the gland swells
   double seed_length_mm = 0.0;
   std::optional<OtherImplant> before;  ///< without compensation, where the needles were aimed to make up for the errors

@@ -16,8 +16,8 @@ namespace {
 constexpr const char* kGroup = "implant";
 constexpr hsize_t kActChunk = 64;
 /// Names of the columns with the parts of a seed's error, in the order of SeedCause.
-constexpr std::array<const char*, kSeedCauses> kPartColumns{"bend_mm",   "motion_mm",  "relaxation_mm",
-                                                            "strand_mm", "release_mm", "aim_mm"};
+constexpr std::array<const char*, kActCauses> kPartColumns{"bend_mm",   "motion_mm",  "relaxation_mm",
+                                                           "strand_mm", "release_mm", "aim_mm"};
 
 std::array<double, 3> three(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 Vec3 vector_of(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
@@ -59,7 +59,7 @@ h5::Handle act_row_type() {
   h5::insert_member(type, "dropped_mm", offsetof(ActRow, dropped_mm), vector);
   h5::insert_member(type, "rest_mm", offsetof(ActRow, rest_mm), vector);
   h5::insert_member(type, "axis", offsetof(ActRow, axis), vector);
-  for (std::size_t k = 0; k < kSeedCauses; ++k)
+  for (std::size_t k = 0; k < kActCauses; ++k)
     h5::insert_member(type, kPartColumns[k], offsetof(ActRow, cause_mm) + k * sizeof(std::array<double, 3>), vector);
   h5::insert_member(type, "in_tissue", offsetof(ActRow, in_tissue), h5::bool_type());
   h5::insert_member(type, "lost", offsetof(ActRow, lost), h5::bool_type());
@@ -90,7 +90,7 @@ ActRow to_row(const SeedAct& act) {
   row.dropped_mm = three(seed.dropped_mm);
   row.rest_mm = three(seed.rest_mm);
   row.axis = three(seed.axis);
-  for (std::size_t k = 0; k < kSeedCauses; ++k) row.cause_mm[k] = three(seed.cause_mm[k]);
+  for (std::size_t k = 0; k < kActCauses; ++k) row.cause_mm[k] = three(seed.cause_mm[k]);
   row.in_tissue = seed.in_tissue ? 1 : 0;
   row.lost = seed.lost ? 1 : 0;
   row.check = check_of(row);
@@ -166,7 +166,7 @@ SeedAct from_row(const ActRow& row) {
   seed.dropped_mm = vector_of(row.dropped_mm);
   seed.rest_mm = vector_of(row.rest_mm);
   seed.axis = vector_of(row.axis);
-  for (std::size_t k = 0; k < kSeedCauses; ++k) seed.cause_mm[k] = vector_of(row.cause_mm[k]);
+  for (std::size_t k = 0; k < kActCauses; ++k) seed.cause_mm[k] = vector_of(row.cause_mm[k]);
   seed.in_tissue = row.in_tissue != 0;
   seed.lost = row.lost != 0;
   return act;

@@ -25,6 +25,9 @@ struct PlanSeedRow {
   std::array<double, 3> planned_mm{}, axis{};
   double drop_depth_mm = 0.0;
 };
+/// A live session knows the causes before SeedCause::probe: its seeds are those of tissue that no probe displaces.
+inline constexpr std::size_t kActCauses = static_cast<std::size_t>(SeedCause::probe);
+
 /// A row of /implant/acts. Its check is the CRC-32 of its other columns in their order.
 struct ActRow {
   std::int8_t kind = 0;
@@ -32,7 +35,7 @@ struct ActRow {
   std::int64_t number = 0, needle = 0;
   double dropped_s = 0.0;
   std::array<double, 3> planned_mm{}, dropped_mm{}, rest_mm{}, axis{};
-  std::array<std::array<double, 3>, kSeedCauses> cause_mm{};
+  std::array<std::array<double, 3>, kActCauses> cause_mm{};
   std::int8_t in_tissue = 0, lost = 0;
   std::uint32_t check = 0;
 };

@@ -11,7 +11,7 @@
 namespace stylet {
 namespace {
 
-constexpr const char* kFoundCauses[] = {"bend", "motion", "relaxation", "strand", "release", "aim"};
+constexpr const char* kFoundCauses[] = {"bend", "motion", "relaxation", "strand", "release", "aim", "probe"};
 static_assert(std::size(kFoundCauses) == kSeedCauses);
 
 std::string three_fields(const Vec3& v) { return fmt::format(",{:.4f},{:.4f},{:.4f}", v.x(), v.y(), v.z()); }

@@ -2,6 +2,7 @@
 #include "implant/found_json.hpp"
 #include "implant/json_parts.hpp"
 #include "implant/oedema_section.hpp"
+#include "probe_json.hpp"
 #include "stylet/core/version.hpp"
 #include "stylet/io/dose_results.hpp"
 #include "stylet/io/implant_results.hpp"
@@ -94,13 +95,15 @@ OrderedJson goals_json(const OrderedJson& planned, const OrderedJson& delivered,
   return rows;
 }
 
+OrderedJson dose_of(const DoseEvaluation& evaluation) {
+  const OrderedJson dose = OrderedJson::parse(dose_json(evaluation));
+  return {{"delivered_dvh", dose["dvh"]}, {"goals", dose["goals"]}};
+}
+
 /// @param found the seeds found on images, where there are any
 OrderedJson other_json(const OtherImplant& other, const std::optional<FoundImplant>& found) {
-  const OrderedJson dose = OrderedJson::parse(dose_json(other.delivered));
-  OrderedJson json = {{"name", other.name},
-                      {"error", errors_json(seed_errors(other.history.seeds))},
-                      {"delivered_dvh", dose["dvh"]},
-                      {"goals", dose["goals"]}};
+  OrderedJson json = {{"name", other.name}, {"error", errors_json(seed_errors(other.history.seeds))}};
+  json.update(dose_of(other.delivered));
   if (found) json["agreement"] = results::agreement_json(compare_found(other.history, found->seeds.seeds).all);
   return json;
 }
@@ -144,6 +147,8 @@ std::string implant_json(const ImplantOutcome& outcome) {
       {"found", outcome.found ? results::found_json(history, *outcome.found) : OrderedJson(nullptr)},
       {"before_compensation", outcome.before ? other_json(*outcome.before, outcome.found) : OrderedJson(nullptr)},
       {"spans", spans},
+      {"probe", outcome.probe ? results::probe_json(*outcome.probe) : OrderedJson(nullptr)},
+      {"probe_out", outcome.probe_out ? dose_of(*outcome.probe_out) : OrderedJson(nullptr)},
       {"assumptions", delivered["assumptions"]}};
   if (temporary) {
     implant["planning_to_delivery_s"] = outcome.scenario.procedure.planning_to_delivery_s;

@@ -54,6 +54,7 @@ std::vector<NamedDose> doses_of(const ImplantOutcome& outcome) {
   std::vector<NamedDose> doses{{"Planned", &outcome.planned}};
   if (outcome.at_planning) doses.push_back({"At planning", &outcome.at_planning->delivered});
   doses.push_back({"Delivered", &outcome.delivered});
+  if (outcome.probe_out) doses.push_back({"Probe out", &*outcome.probe_out});
   if (!outcome.found) return doses;
   doses.push_back({"Found", &outcome.found->dose});
   if (outcome.found->comparison.matching.shift_beyond_chance())

@@ -77,6 +77,9 @@ std::string dwell_sentences(const ImplantOutcome& outcome) {
                     toward_text(mean.z(), 2));
 }
 
+/// Whether the tissue goes back when the probe is taken out, to where the contours of the plan have it.
+bool probe_goes_back(const ImplantOutcome& outcome) { return outcome.probe && !outcome.probe->settings.in_contours; }
+
 std::string seed_sentences(const ImplantOutcome& outcome) {
   const ImplantHistory& history = outcome.history;
   const SeedErrors errors = seed_errors(history.seeds);
@@ -90,10 +93,22 @@ std::string seed_sentences(const ImplantOutcome& outcome) {
   if (errors.seeds == 0) return text;
   return text +
          fmt::format(
-             "With all needles out, the seeds lie {} mm from their planned places on average; 95 % of them lie "
-             "within {} mm. ",
-             fixed(errors.mean_mm, 1), fixed(errors.p95_mm, 1)) +
+             "With {}, the seeds lie {} mm from their planned places on average; 95 % of them lie within {} mm. ",
+             probe_goes_back(outcome) ? "the probe and all needles out" : "all needles out", fixed(errors.mean_mm, 1),
+             fixed(errors.p95_mm, 1)) +
          mean_shift(errors) + shift_by_third(history);
+}
+
+/// The dose once the probe is out, where the contours were drawn with the probe in place.
+std::string probe_out_sentence(const ImplantOutcome& outcome) {
+  if (!outcome.probe_out) return {};
+  const StructureDose* in = find_region(outcome.delivered, "prostate");
+  const StructureDose* out = find_region(*outcome.probe_out, "prostate");
+  if (!in || !out) return {};
+  return fmt::format(
+      " The contours were drawn with the probe in place, and so is the delivered dose; with the probe out, gland and "
+      "seeds go back together, and the target’s D90 is {} Gy.",
+      fixed(out->dvh.dose_of_percent(90.0), 0));
 }
 
 std::string cause_sentence(const ImplantHistory& history) {
@@ -136,7 +151,7 @@ std::string dose_sentences(const ImplantOutcome& outcome) {
   }
   if (has_oedema(outcome.scenario))
     text += "The delivered dose includes the swelling of the gland, which the plan does not know.";
-  return text;
+  return text + probe_out_sentence(outcome);
 }
 
 }  // namespace
@@ -190,6 +205,9 @@ const char* meaning_of(SeedCause cause, Implant implant) {
       return "The seed jumped along its track when it was let go.";
     case SeedCause::aim:
       return "The needle was aimed beside the plan on purpose, to make up for the other causes.";
+    case SeedCause::probe:
+      return "The probe held the gland displaced when the seed was dropped, and the contours of the plan were drawn "
+             "without it; with the probe out the tissue goes back and takes the seed along.";
   }
   return "";
 }

@@ -25,6 +25,8 @@ const char* column_of(SeedCause cause) {
       return "release";
     case SeedCause::aim:
       return "aim";
+    case SeedCause::probe:
+      return "probe";
     case SeedCause::wait:
       return "wait";
   }

@@ -18,8 +18,8 @@ std::array<double, 3> numbers_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; 
 Vec3 vector_from(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
 /// Names of the columns with the parts of a seed's error, in the order of SeedCause.
-constexpr std::array<const char*, kSeedCauses> kCauseColumns{"bend_mm",   "motion_mm",  "relaxation_mm",
-                                                             "strand_mm", "release_mm", "aim_mm"};
+constexpr std::array<const char*, kAllCauses> kCauseColumns{"bend_mm",    "motion_mm", "relaxation_mm", "strand_mm",
+                                                            "release_mm", "aim_mm",    "probe_mm",      "wait_mm"};
 
 std::string member_name(std::size_t number) { return fmt::format("{:03}", number); }
 
@@ -267,6 +267,8 @@ ImplantRecord whole_implant_in(hid_t file) {
     throw h5::Failure("an HDF5 file, but not that of an implant");
   if (integer_attribute(file, "format_version") > kImplantFileVersion)
     throw h5::Failure("written by a newer version of stylet");
+  if (integer_attribute(file, "format_version") < kImplantFileVersion)
+    throw h5::Failure("written by an older version of stylet, whose seeds have fewer causes");
   ImplantRecord r;
   r.version = h5::read_text_attribute(file, "version");
   r.scenario_name = h5::read_text_attribute(file, "scenario_name");
@@ -309,7 +311,7 @@ h5::Handle seed_row_type() {
   h5::insert_member(type, "dropped_mm", offsetof(SeedRow, dropped_mm), vector);
   h5::insert_member(type, "rest_mm", offsetof(SeedRow, rest_mm), vector);
   h5::insert_member(type, "axis", offsetof(SeedRow, axis), vector);
-  for (std::size_t k = 0; k < kSeedCauses; ++k)
+  for (std::size_t k = 0; k < kAllCauses; ++k)
     h5::insert_member(type, kCauseColumns[k], offsetof(SeedRow, cause_mm) + k * 3 * sizeof(double), vector);
   return type;
 }
@@ -325,7 +327,7 @@ SeedRow to_row(const SeedHistory& seed) {
   row.dropped_mm = numbers_of(seed.dropped_mm);
   row.rest_mm = numbers_of(seed.rest_mm);
   row.axis = numbers_of(seed.axis);
-  for (std::size_t k = 0; k < kSeedCauses; ++k) row.cause_mm[k] = numbers_of(seed.cause_mm[k]);
+  for (std::size_t k = 0; k < kAllCauses; ++k) row.cause_mm[k] = numbers_of(seed.cause_mm[k]);
   return row;
 }
 
@@ -340,7 +342,7 @@ SeedHistory from_row(const SeedRow& row) {
   seed.dropped_mm = vector_from(row.dropped_mm);
   seed.rest_mm = vector_from(row.rest_mm);
   seed.axis = vector_from(row.axis);
-  for (std::size_t k = 0; k < kSeedCauses; ++k) seed.cause_mm[k] = vector_from(row.cause_mm[k]);
+  for (std::size_t k = 0; k < kAllCauses; ++k) seed.cause_mm[k] = vector_from(row.cause_mm[k]);
   return seed;
 }
 

@@ -12,7 +12,7 @@
 /// The format of the run.h5 of an implant (docs/results.md), shared by its writer and its reader.
 namespace stylet::results {
 
-inline constexpr int kImplantFileVersion = 1;
+inline constexpr int kImplantFileVersion = 2;
 inline constexpr const char* kGiveAnImplant =
     "Give a run.h5 that `stylet implant` wrote; if it is damaged, use another copy or repeat the implant";
 
@@ -23,7 +23,7 @@ struct SeedRow {
   std::int8_t lost = 0, in_tissue = 0;
   double dropped_s = 0.0;
   std::array<double, 3> planned_mm{}, dropped_mm{}, rest_mm{}, axis{};
-  std::array<std::array<double, 3>, kSeedCauses> cause_mm{};
+  std::array<std::array<double, 3>, kAllCauses> cause_mm{};
 };
 h5::Handle seed_row_type();
 SeedRow to_row(const SeedHistory& seed);
