@@ -60,7 +60,7 @@ TEST(LetTissueGoBack, takes_seeds_and_their_axes_to_the_material_in_a_linear_fie
     const Vec3 shift = draw.vector(3.0);
     const Vec3 material = draw.vector(20.0), along = draw.vector(1.0).normalized();
     const Mat3 F = Mat3::Identity() + gradient;
-    std::vector<SeedHistory> seeds{seed_at(shift + F * material, (F * along).normalized())};
+    std::vector<SeedHistory> seeds(1, seed_at(shift + F * material, (F * along).normalized()));
     let_tissue_go_back(block.locator, block.linear(gradient, shift), kSeed_mm, seeds);
     const SeedHistory& seed = seeds.front();
     EXPECT_LT((seed.rest_mm - material).norm(), 1e-3);
@@ -74,8 +74,9 @@ TEST(LetTissueGoBack, takes_seeds_and_their_axes_to_the_material_in_a_linear_fie
 
 TEST(LetTissueGoBack, leaves_lost_seeds_and_those_outside_of_the_tissue) {
   const Block block;
-  std::vector<SeedHistory> seeds{seed_at({1, 2, 3}, Vec3::UnitZ()), seed_at({0, 0, 90}, Vec3::UnitZ())};
+  std::vector<SeedHistory> seeds(1, seed_at({1, 2, 3}, Vec3::UnitZ()));
   seeds.front().lost = true;
+  seeds.push_back(seed_at({0, 0, 90}, Vec3::UnitZ()));
   const std::vector<SeedHistory> before = seeds;
   let_tissue_go_back(block.locator, block.linear(Mat3::Zero(), Vec3(0, -4, 0)), kSeed_mm, seeds);
   for (std::size_t k = 0; k < seeds.size(); ++k) {

@@ -34,7 +34,7 @@ DosePlan two_catheters() {
   return plan;
 }
 
-Scenario scenario() {
+Scenario catheter_scenario() {
   Scenario s = test::box_scenario();
   s.insertions.clear();
   s.procedure.speed_mm_per_s = 40.0;
@@ -43,7 +43,7 @@ Scenario scenario() {
   return s;
 }
 
-ImplantHistory simulated(const Scenario& s, const TetMesh& mesh, const DosePlan& plan) {
+ImplantHistory simulated_catheters(const Scenario& s, const TetMesh& mesh, const DosePlan& plan) {
   auto history = simulate_implant(s, mesh, load_catheters(plan, kTip_mm).value(), kSource_mm, "case.toml");
   if (!history) throw std::runtime_error(history.error().message());
   return *history;
@@ -78,7 +78,7 @@ TEST(WaitingSteps, follow_a_creep_of_any_time_constant) {
 }
 
 TEST(TemporaryImplant, in_creeping_tissue_moves_dwell_positions_until_the_delivery_and_the_parts_add_up) {
-  const ImplantHistory history = simulated(scenario(), test::box_patient(), two_catheters());
+  const ImplantHistory history = simulated_catheters(catheter_scenario(), test::box_patient(), two_catheters());
   ASSERT_EQ(history.seeds.size(), 6U);
   ASSERT_EQ(history.needles.size(), 2U);
   EXPECT_EQ(implant_of(history.seeds), Implant::temporary);
@@ -114,9 +114,9 @@ TEST(TemporaryImplant, in_creeping_tissue_moves_dwell_positions_until_the_delive
 }
 
 TEST(TemporaryImplant, in_elastic_tissue_does_not_move_between_planning_and_delivery) {
-  Scenario s = scenario();
+  Scenario s = catheter_scenario();
   s.tissue_model.creep = 1.0;
-  const ImplantHistory history = simulated(s, test::box_patient(), two_catheters());
+  const ImplantHistory history = simulated_catheters(s, test::box_patient(), two_catheters());
   EXPECT_LT(largest_wait(history), 1e-9);
   double moved = 0.0;
   for (const SeedHistory& dwell : history.seeds) {
@@ -127,13 +127,13 @@ TEST(TemporaryImplant, in_elastic_tissue_does_not_move_between_planning_and_deli
 }
 
 TEST(TemporaryImplant, without_a_wait_is_delivered_as_it_was_planned) {
-  Scenario s = scenario();
+  Scenario s = catheter_scenario();
   s.procedure.planning_to_delivery_s = 0.0;
-  EXPECT_EQ(largest_wait(simulated(s, test::box_patient(), two_catheters())), 0.0);
+  EXPECT_EQ(largest_wait(simulated_catheters(s, test::box_patient(), two_catheters())), 0.0);
 }
 
 TEST(TemporaryImplant, in_tissue_without_friction_and_cutting_force_has_dwell_positions_nearly_where_planned) {
-  Scenario s = scenario();
+  Scenario s = catheter_scenario();
   s.tissue_model.preset = TissuePreset::linear;
   for (const char* region : {"body", "prostate"}) {
     TissueParameters tissue = default_tissue(region, TissuePreset::linear);
@@ -143,34 +143,34 @@ TEST(TemporaryImplant, in_tissue_without_friction_and_cutting_force_has_dwell_po
     s.tissue[region] = tissue;
   }
   s.coupling.tip_viscosity_Ns_per_m = 0.01;
-  for (const SeedHistory& dwell : simulated(s, test::box_patient(), two_catheters()).seeds)
+  for (const SeedHistory& dwell : simulated_catheters(s, test::box_patient(), two_catheters()).seeds)
     EXPECT_LT(dwell.error_mm().norm(), 0.02);
 }
 
 // A wait that is ten times longer than the creep needs ends where one that is a hundred times longer does, so the steps
 // that grow lose nothing.
 TEST(TemporaryImplant, ends_in_the_same_place_after_any_long_wait) {
-  Scenario s = scenario();
+  Scenario s = catheter_scenario();
   s.procedure.planning_to_delivery_s = 60.0;
-  const ImplantHistory minute = simulated(s, test::box_patient(), two_catheters());
+  const ImplantHistory minute = simulated_catheters(s, test::box_patient(), two_catheters());
   s.procedure.planning_to_delivery_s = 36000.0;
-  const ImplantHistory hours = simulated(s, test::box_patient(), two_catheters());
+  const ImplantHistory hours = simulated_catheters(s, test::box_patient(), two_catheters());
   for (std::size_t k = 0; k < hours.seeds.size(); ++k)
     EXPECT_LT((hours.seeds[k].rest_mm - minute.seeds[k].rest_mm).norm(), 0.02);
 }
 
 TEST(TemporaryImplant, holds_all_catheters_whatever_the_key_together_says) {
-  Scenario s = scenario();
+  Scenario s = catheter_scenario();
   s.coupling.method = CouplingSettings::Method::embedded;
-  const ImplantHistory one = simulated(s, test::box_patient(), two_catheters());
+  const ImplantHistory one = simulated_catheters(s, test::box_patient(), two_catheters());
   s.procedure.together = NeedlesTogether::all;
-  const ImplantHistory all = simulated(s, test::box_patient(), two_catheters());
+  const ImplantHistory all = simulated_catheters(s, test::box_patient(), two_catheters());
   for (std::size_t k = 0; k < all.seeds.size(); ++k)
     EXPECT_LT((all.seeds[k].rest_mm - one.seeds[k].rest_mm).norm(), 1e-8);
 }
 
 TEST(TemporaryImplant, refuses_a_coupling_that_holds_one_needle_only) {
-  Scenario s = scenario();
+  Scenario s = catheter_scenario();
   s.coupling.method = CouplingSettings::Method::node_addition;
   s.coupling.solver = CouplingSettings::Solver::staggered;
   const auto history = simulate_implant(s, test::box_patient(), load_catheters(two_catheters(), kTip_mm).value(),
