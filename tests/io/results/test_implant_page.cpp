@@ -334,7 +334,7 @@ TEST(CausePicture, leaves_out_causes_that_moved_no_seed_and_a_sentence_says_so) 
   std::string picture = results::cause_picture(history);
   EXPECT_EQ(count(picture, "class=\"group\""), 4U) << "three causes and all together";
   EXPECT_EQ(count(picture, ">strand<") + count(picture, ">release<") + count(picture, ">aim<"), 0U);
-  EXPECT_EQ(count(results::causes_left_out(history), "strand, release and aim"), 1U);
+  EXPECT_EQ(count(results::causes_left_out(history), "strand, release, aim and probe"), 1U);
   for (SeedHistory& seed : history.seeds) {
     for (const SeedCause cause : {SeedCause::strand, SeedCause::release, SeedCause::aim})
       seed.by(cause) = Vec3(0, 0, 0.2);
