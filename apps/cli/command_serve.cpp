@@ -59,6 +59,11 @@ Result<serve::LoadedCase> load_implant(const fs::path& file, const std::vector<s
   serve::LoadedCase loaded{prepared->model, prepared->notes};
   for (const auto* notes : {&plan->plan.notes, &plan->structures.notes})
     loaded.notes.insert(loaded.notes.end(), notes->begin(), notes->end());
+  if (scenario->probe.kind != ProbeKind::none && !scenario->probe.in_contours) {
+    loaded.notes.emplace_back(
+        "The probe moves the pictures only: the seeds of the plan, their errors and their dose are those of tissue "
+        "without it. stylet implant drops them under the probe.");
+  }
   for (const std::string& warning : loaded.notes) console.warn(warning);
   loaded.implant = std::make_shared<serve::ImplantCase>(
       serve::ImplantCase{std::move(plan->plan), std::move(plan->source), std::move(plan->needles),

@@ -336,11 +336,11 @@ TEST(CausePicture, leaves_out_causes_that_moved_no_seed_and_a_sentence_says_so) 
   EXPECT_EQ(count(picture, ">strand<") + count(picture, ">release<") + count(picture, ">aim<"), 0U);
   EXPECT_EQ(count(results::causes_left_out(history), "strand, release, aim and probe"), 1U);
   for (SeedHistory& seed : history.seeds) {
-    for (const SeedCause cause : {SeedCause::strand, SeedCause::release, SeedCause::aim})
+    for (const SeedCause cause : {SeedCause::strand, SeedCause::release, SeedCause::aim, SeedCause::probe})
       seed.by(cause) = Vec3(0, 0, 0.2);
   }
   picture = results::cause_picture(history);
-  EXPECT_EQ(count(picture, "class=\"group\""), 7U);
+  EXPECT_EQ(count(picture, "class=\"group\""), 8U);
   EXPECT_EQ(results::causes_left_out(history), "");
 }
 
