@@ -86,6 +86,29 @@ TEST(ImplantPage, judges_the_goals_of_both_doses) {
   EXPECT_LT(row.find("</i>met<"), row.find("</i>missed<"));
 }
 
+TEST(ImplantPage, says_where_the_probe_was_and_which_places_are_without_it) {
+  ImplantOutcome implant = outcome();
+  EXPECT_EQ(count(page_of(implant), "probe"), count(page_of(implant), "and probe, which moved no seed"));
+  implant.probe = ProbeReport{};
+  implant.probe->settings.kind = ProbeKind::biplane;
+  implant.probe->settings.lift_mm = 7.0;
+  std::string text = markup(page_of(implant));
+  EXPECT_EQ(count(text, "With the probe and all needles out"), 1U);
+  EXPECT_GE(count(text, "lifted by 7"), 1U);
+  EXPECT_EQ(count(text, "Probe out"), 0U);
+  EXPECT_TRUE(nlohmann::json::parse(implant_json(implant))["implant"]["probe_out"].is_null());
+  // With contours of the probe in place there is a dose without it.
+  implant.probe->settings.in_contours = true;
+  implant.probe_out = implant.planned;
+  text = markup(page_of(implant));
+  EXPECT_EQ(count(text, "With all needles out"), 1U);
+  EXPECT_GE(count(text, "Probe out"), 1U);
+  EXPECT_EQ(count(text, "gland and seeds go back together"), 1U);
+  const auto json = nlohmann::json::parse(implant_json(implant))["implant"];
+  EXPECT_EQ(json["probe_out"]["goals"].size(), implant.planned.goals.size());
+  EXPECT_TRUE(json["probe"]["in_contours"].get<bool>());
+}
+
 TEST(ImplantPage, escapes_names_and_sentences) {
   ImplantOutcome implant = outcome();
   const std::string name = "<script>alert(1)</script>";
@@ -278,7 +301,7 @@ TEST(FoundCsv, has_a_row_for_each_seed_of_the_plan_and_each_found_seed_without_m
   std::size_t rows = 0;
   while (std::getline(lines, line)) {
     ++rows;
-    EXPECT_EQ(count(line, ","), 42U) << line;
+    EXPECT_EQ(count(line, ","), 45U) << line;
   }
   EXPECT_EQ(rows, 1U + 44U + 1U);
 }

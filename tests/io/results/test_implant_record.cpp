@@ -154,6 +154,16 @@ TEST(ImplantRecord, has_the_seeds_of_the_summary) {
   }
 }
 
+TEST(ImplantRecord, keeps_all_causes_of_seeds_and_of_dwell_positions) {
+  ImplantRecord wrote = invented_record();
+  for (std::size_t c = 0; c < kAllCauses; ++c) wrote.seeds[1].cause_mm[c] = Vec3(1.0, 2.0, static_cast<double>(c));
+  const RecordFolder folder;
+  ASSERT_TRUE(write_implant_record(wrote, folder.path / "run.h5").ok());
+  const auto read = read_implant_record(folder.path / "run.h5");
+  ASSERT_TRUE(read.ok()) << read.error().message();
+  EXPECT_EQ(read->seeds[1].cause_mm, wrote.seeds[1].cause_mm);
+}
+
 TEST(ImplantRecord, is_no_recording_of_an_insertion_and_says_what_to_do) {
   const RecordFolder folder;
   ASSERT_TRUE(write_implant_record(invented_record(), folder.path / "run.h5").ok());

@@ -62,6 +62,14 @@ std::vector<NamedDose> doses_of(const ImplantOutcome& outcome) {
   return doses;
 }
 
+/// Where the probe is, its force, and how it deforms the gland; nothing without a probe.
+std::string probe_definitions(const ImplantOutcome& outcome) {
+  std::string facts;
+  if (!outcome.probe) return facts;
+  for (const ProbeFact& fact : probe_facts(*outcome.probe)) facts += definition(capital(fact.name), fact.text);
+  return facts;
+}
+
 /// Whether any needle is in the tissue together with another one.
 bool needles_together(const ImplantHistory& history) {
   return std::any_of(history.needles.begin(), history.needles.end(), [](const NeedleHistory& needle) {
@@ -116,7 +124,7 @@ Result<std::string> implant_page(const ImplantOutcome& outcome) {
       {"report_of_found", found ? "; <a href=\"found/report.html\">the dose of the found seeds</a>" : ""},
       {"files_of_found", found ? " The match with the found seeds is in <code>found.csv</code>." : ""},
       {"seeds", seed_error_table(history)},
-      {"procedure", procedure_facts(outcome.scenario, implant)},
+      {"procedure", procedure_facts(outcome.scenario, implant) + probe_definitions(outcome)},
       {"seed_facts", seed_facts(outcome.scenario, implant)},
       {"tissue", tissue_facts(outcome.scenario, history.nodes)},
       {"plan", plan_facts(outcome.planned)},
