@@ -267,6 +267,7 @@ Result<ImplantOutcome> implant(const Scenario& scenario, const std::string& wher
   append(outcome.warnings, of.plan.notes);
   append(outcome.warnings, of.structures.notes);
   append(outcome.warnings, patient->report.notes);
+  if (*probe) append(outcome.warnings, probe_harms(**probe, outcome.history));
   append(outcome.warnings, probe_warnings(scenario, of, outcome.found.has_value()));
   append(outcome.warnings, outcome.history.warnings);
   append(outcome.warnings, outcome.delivered.warnings);

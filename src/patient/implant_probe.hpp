@@ -2,11 +2,13 @@
 #pragma once
 
 #include "stylet/core/progress.hpp"
+#include "stylet/implant/implant.hpp"
 #include "stylet/probe/patient_probe.hpp"
 #include "stylet/sim/held_tissue.hpp"
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace stylet {
 
@@ -23,5 +25,10 @@ struct ImplantProbe {
 /// Errors: those of hold_tissue() and of PatientProbe::prepare().
 Result<std::optional<ImplantProbe>> implant_probe(const Scenario& scenario, const TetMesh& mesh,
                                                   const std::string& where, const Progress& progress);
+
+/// Sentences about seeds that the probe and its wall leave no room for: those in the probe, and those in the rectum
+/// only because the probe has pushed its wall towards their needles.
+/// @param history of an implant with this probe
+std::vector<std::string> probe_harms(const ImplantProbe& probe, const ImplantHistory& history);
 
 }  // namespace stylet

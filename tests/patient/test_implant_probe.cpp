@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -88,6 +89,16 @@ TEST(ImplantUnderAProbe, leaves_seeds_behind_when_the_gland_goes_back) {
     EXPECT_GT(seed.by(SeedCause::probe).y(), 0.0);
   }
   EXPECT_GT(seed_errors(outcome.history.seeds).mean_mm, seed_errors(unprobed().history.seeds).mean_mm);
+}
+
+TEST(ImplantUnderAProbe, that_is_where_the_needles_go_or_pushes_the_rectum_there_says_so) {
+  const auto harms = [](const ImplantOutcome& outcome, const char* of) {
+    return std::count_if(outcome.warnings.begin(), outcome.warnings.end(),
+                         [&](const std::string& warning) { return warning.find(of) != std::string::npos; });
+  };
+  const ImplantOutcome outcome = implanted({"probe.kind=biplane", "probe.lift_mm=25", "plan.needle[0].hole=D2.5"});
+  EXPECT_GE(harms(outcome, "would come to rest in the probe") + harms(outcome, "came to rest in the rectum"), 1);
+  EXPECT_EQ(harms(unprobed(), "would come to rest in the probe") + harms(unprobed(), "came to rest in the rectum"), 0);
 }
 
 TEST(ImplantUnderAProbe, of_the_contours_is_as_without_one_until_the_probe_is_taken_out) {
