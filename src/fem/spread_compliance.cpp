@@ -2,6 +2,7 @@
 #include "stylet/fem/spread_compliance.hpp"
 
 #include "stylet/core/parallel.hpp"
+#include "stylet/fem/quadratic_part.hpp"
 
 #include <Eigen/SparseCore>
 
@@ -88,61 +89,6 @@ std::vector<SpreadPoint> spread_about(const Vec3& x, const Tissue& tissue) {
   return spread;
 }
 
-/// The elements near a way as a body of their own: made quadratic, and held at the rim where they meet the other
-/// elements.
-struct Surroundings {
-  std::vector<Index> number;  ///< (elements of the whole mesh) number in this body, or −1
-  std::vector<Index> node;    ///< (nodes of this body) number in the whole mesh
-  std::unique_ptr<Tissue> tissue;
-};
-
-/// @param near_way whether a place is near the way; elements with such a corner belong to the surroundings
-template <class Near>
-Result<Surroundings> surroundings(const Tissue& whole, const Near& near_way) {
-  const TetMesh& mesh = whole.mesh();
-  std::vector<char> near(mesh.nodes.size(), 0);
-  for (std::size_t k = 0; k < near.size(); ++k) near[k] = near_way(mesh.nodes[k]) ? 1 : 0;
-  Surroundings result;
-  result.number.assign(mesh.tets.size(), -1);
-  TetMesh part;
-  part.regions = mesh.regions;
-  std::vector<Index> part_node(mesh.nodes.size(), -1);
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    const auto& corners = mesh.tets[t];
-    if (std::none_of(corners.begin(), corners.end(), [&](Index k) { return near[static_cast<std::size_t>(k)] != 0; }))
-      continue;
-    result.number[t] = part.tet_count();
-    part.tet_region.push_back(mesh.tet_region[t]);
-    auto& own = part.tets.emplace_back();
-    for (std::size_t i = 0; i < 4; ++i) {
-      Index& at = part_node[static_cast<std::size_t>(corners[i])];
-      if (at < 0) {
-        at = part.node_count();
-        part.nodes.push_back(mesh.nodes[static_cast<std::size_t>(corners[i])]);
-        result.node.push_back(corners[i]);
-      }
-      own[i] = at;
-    }
-  }
-  std::vector<char> held(part.nodes.size(), 0);
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    if (result.number[t] >= 0) continue;
-    for (const Index corner : mesh.tets[t]) {
-      const Index at = part_node[static_cast<std::size_t>(corner)];
-      if (at >= 0) held[static_cast<std::size_t>(at)] = 1;
-    }
-  }
-  std::vector<Index> fixed;
-  for (Index k = 0; k < part.node_count(); ++k) {
-    if (held[static_cast<std::size_t>(k)] != 0 || whole.is_fixed(result.node[static_cast<std::size_t>(k)]))
-      fixed.push_back(k);
-  }
-  auto tissue = Tissue::build(std::move(part), whole.materials(), fixed, {}, Element::p2);
-  if (!tissue) return tissue.error();
-  result.tissue = std::make_unique<Tissue>(std::move(*tissue));
-  return result;
-}
-
 }  // namespace
 
 std::vector<SpreadCompliance::Line> SpreadCompliance::lines_of(const std::vector<NeedleWay>& ways) {
@@ -166,20 +112,20 @@ double SpreadCompliance::Line::distance(const Vec3& x) const {
 
 Result<MatX> SpreadCompliance::solve(const Tissue& tissue, const Line& line) {
   const Eigen::Index columns = 3 * Eigen::Index{line.count};
-  std::optional<Surroundings> near;
+  std::optional<QuadraticPart> near;
   if (tissue.element() != Element::p2 && tissue.mesh().node_count() <= kMostQuadratic) {
-    auto made = surroundings(tissue, [&](const Vec3& x) { return line.distance(x) < kQuadratic_mm; });
+    auto made = QuadraticPart::build(tissue, [&](const Vec3& x) { return line.distance(x) < kQuadratic_mm; });
     if (!made) return made.error();
     near = std::move(*made);
   }
   MatX on_mesh = MatX::Zero(3 * Eigen::Index{tissue.displacement_nodes()}, columns);
-  MatX on_near = MatX::Zero(near ? 3 * Eigen::Index{near->tissue->displacement_nodes()} : 0, columns);
+  MatX on_near = MatX::Zero(near ? 3 * Eigen::Index{near->tissue().displacement_nodes()} : 0, columns);
   for_each_in_parallel(static_cast<std::size_t>(line.count), [&](std::size_t k) {
     const Vec3 x = line.way.entry + kEvery_mm * static_cast<double>(k) * line.way.direction;
     for (const SpreadPoint& point : spread_about(x, tissue)) {
-      const Index inner = near ? near->number[static_cast<std::size_t>(point.tet)] : -1;
+      const Index inner = near ? near->number(point.tet) : -1;
       const Shape shape =
-          inner < 0 ? tissue.shape(point.tet, point.weights) : near->tissue->shape(inner, point.weights);
+          inner < 0 ? tissue.shape(point.tet, point.weights) : near->tissue().shape(inner, point.weights);
       MatX& load = inner < 0 ? on_mesh : on_near;
       for (int i = 0; i < shape.count; ++i) {
         const auto n = static_cast<std::size_t>(i);
@@ -190,17 +136,9 @@ Result<MatX> SpreadCompliance::solve(const Tissue& tissue, const Line& line) {
   });
   MatX M = MatX::Zero(columns, columns);
   if (near) {
-    // K⁻¹ by static condensation: the inner nodes with the rim held, plus the whole mesh under the forces on the rim.
-    const MatX u = near->tissue->solve(on_near);
+    const MatX u = near->tissue().solve(on_near);
     M.noalias() += on_near.transpose() * u;
-    for (Eigen::Index c = 0; c < columns; ++c) {
-      const VecX presses = on_near.col(c) - near->tissue->support_forces(u.col(c));
-      for (const Index node : near->tissue->fixed_nodes()) {
-        for (const Index end : near->tissue->ends_of(node))
-          on_mesh.col(c).segment<3>(3 * Eigen::Index{near->node[static_cast<std::size_t>(end)]}) +=
-              0.5 * presses.segment<3>(3 * Eigen::Index{node});
-      }
-    }
+    near->add_rim_forces(on_near, u, on_mesh);
   }
   M.noalias() += on_mesh.transpose() * tissue.solve(on_mesh);
   return MatX(0.5 * (M + M.transpose()));

@@ -60,8 +60,9 @@ Result<PatientProbe> PatientProbe::prepare(const Patient& patient, const ProbeSe
   if (points.empty())
     return input_error(where, "no part of its rectum is near the axis of the probe",
                        "Check the structure rectum, or set probe.kind = \"none\"");
-  auto wall =
-      std::make_shared<const WallCompliance>(WallCompliance::solve(patient.tissue, std::move(points), progress));
+  Result<WallCompliance> solved = WallCompliance::solve(patient.tissue, std::move(points), progress);
+  if (!solved) return solved.error();
+  auto wall = std::make_shared<const WallCompliance>(*std::move(solved));
   PatientProbe probe(*seat, ProbeContact(std::move(wall)), GlandMeasure(mesh, patient.topology, patient.gland_regions));
   if (settings.in_contours) probe.contact_.set_reference(capsule_of(probe.place(settings)));
   return probe;

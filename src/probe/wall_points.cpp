@@ -23,7 +23,7 @@ struct Sample {
   Vec3 outward;
   double area;
   double size;  // wanted spacing relative to the finest
-  Shape shape;
+  MaterialPoint material;
 };
 
 /// The wanted spacing at a place, relative to the finest.
@@ -63,8 +63,8 @@ class Sampler {
       if (!is_in_reach(at, face.outward)) return;
       Vec4 weights = Vec4::Zero();
       for (std::size_t k = 0; k < 3; ++k) weights[local[k]] = share[k];
-      samples.push_back({at, face.outward, area / (pieces * pieces), size_at(reach_, at, face.outward),
-                         tissue_.shape(face.tet, weights)});
+      samples.push_back(
+          {at, face.outward, area / (pieces * pieces), size_at(reach_, at, face.outward), {face.tet, weights}});
     };
     for (int i = 0; i < pieces; ++i) {
       for (int j = 0; i + j < pieces; ++j) {
@@ -147,30 +147,40 @@ class Areas {
   std::vector<std::size_t> seed_;
 };
 
-std::vector<WallPoint> points_of(const std::vector<Sample>& samples, const Areas& areas) {
+std::vector<WallPoint> points_of(const std::vector<Sample>& samples, const Areas& areas, const Tissue& tissue) {
   std::vector<WallPoint> points(areas.seeds.size());
   std::vector<Vec3> outward(points.size(), Vec3::Zero());
-  std::vector<std::map<Index, double>> weights(points.size());
   for (std::size_t s = 0; s < samples.size(); ++s) {
     const Sample& sample = samples[s];
     const std::size_t k = areas.seed_of(s);
     points[k].area_mm2 += sample.area;
     points[k].position_mm += sample.area * sample.x;
     outward[k] += sample.area * sample.outward;
-    for (int i = 0; i < sample.shape.count; ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      if (sample.shape.weight[at] != 0.0) weights[k][sample.shape.node[at]] += sample.area * sample.shape.weight[at];
-    }
+    points[k].pieces.emplace_back(sample.material, sample.area);
   }
   for (std::size_t k = 0; k < points.size(); ++k) {
     points[k].position_mm /= points[k].area_mm2;
     points[k].outward = outward[k].normalized();
-    for (const auto& [node, weight] : weights[k]) points[k].weights.emplace_back(node, weight / points[k].area_mm2);
+    for (auto& [at, share] : points[k].pieces) share /= points[k].area_mm2;
+    points[k].weights = area_weights(points[k], tissue, [](Index tet) { return tet; });
   }
   return points;
 }
 
 }  // namespace
+
+std::vector<std::pair<Index, double>> area_weights(const WallPoint& point, const Tissue& tissue,
+                                                   const std::function<Index(Index tet)>& number_of) {
+  std::map<Index, double> weights;
+  for (const auto& [at, share] : point.pieces) {
+    const Shape shape = tissue.shape(number_of(at.tet), at.weights);
+    for (int i = 0; i < shape.count; ++i) {
+      const auto n = static_cast<std::size_t>(i);
+      if (shape.weight[n] != 0.0) weights[shape.node[n]] += share * shape.weight[n];
+    }
+  }
+  return {weights.begin(), weights.end()};
+}
 
 Result<std::vector<WallFace>> rectal_wall(const TetMesh& mesh, const Topology& topology, const std::string& where) {
   const int lumen = mesh.region_index("rectal_lumen");
@@ -237,7 +247,7 @@ std::vector<WallPoint> wall_points(const Tissue& tissue, const std::vector<WallF
     areas.add_seed(sample);
   }
   for (int i = 0; i < kRecentred; ++i) areas.recentre();
-  return points_of(samples, areas);
+  return points_of(samples, areas, tissue);
 }
 
 }  // namespace stylet

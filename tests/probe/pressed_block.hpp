@@ -18,7 +18,7 @@ struct Block {
   std::vector<WallFace> faces;
 
   explicit Block(TetMesh mesh, Material material, const std::function<bool(const Vec3&)>& is_wall,
-                 const std::function<bool(const Vec3&)>& is_fixed) {
+                 const std::function<bool(const Vec3&)>& is_fixed, Element element = Element::p1) {
     const Topology topology(mesh);
     for (const Face& face : topology.boundary) {
       Vec3 middle = Vec3::Zero();
@@ -32,20 +32,22 @@ struct Block {
     std::vector<Index> fixed;
     for (Index n = 0; n < mesh.node_count(); ++n)
       if (is_fixed(mesh.nodes[static_cast<std::size_t>(n)])) fixed.push_back(n);
-    tissue = std::make_shared<const Tissue>(Tissue::build(std::move(mesh), {material}, fixed).value());
+    tissue = std::make_shared<const Tissue>(Tissue::build(std::move(mesh), {material}, fixed, {}, element).value());
   }
 
   [[nodiscard]] std::shared_ptr<const WallCompliance> wall(const WallReach& reach) const {
-    return std::make_shared<const WallCompliance>(WallCompliance::solve(*tissue, wall_points(*tissue, faces, reach)));
+    return std::make_shared<const WallCompliance>(
+        WallCompliance::solve(*tissue, wall_points(*tissue, faces, reach)).value());
   }
 };
 
 inline bool is_top(const Vec3& x) { return x.z() > -1e-6; }
 
 /// A block 40 × 40 × 20 mm of 10 kPa.
-inline Block soft_block(int cells = 10, double jitter = 0.1) {
-  return Block(box_mesh({-20, -20, -20}, {20, 20, 0}, {cells, cells, cells / 2}, jitter), {0.01, 0.3}, is_top,
-               [](const Vec3& x) { return x.z() < -19.999; });
+inline Block soft_block(int cells = 10, double jitter = 0.1, Element element = Element::p1) {
+  return Block(
+      box_mesh({-20, -20, -20}, {20, 20, 0}, {cells, cells, cells / 2}, jitter), {0.01, 0.3}, is_top,
+      [](const Vec3& x) { return x.z() < -19.999; }, element);
 }
 
 /// A probe whose rounded end presses down on the block's middle by a depth.

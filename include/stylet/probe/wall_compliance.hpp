@@ -9,7 +9,9 @@ namespace stylet {
 /// How the points of a wall, and all nodes of the mesh, move under forces on these points: w points, n nodes.
 struct WallCompliance {
   /// Solves with the tissue's factor, three right-hand sides for each point. Takes seconds.
-  static WallCompliance solve(const Tissue& tissue, std::vector<WallPoint> points, const Progress& progress = {});
+  /// Errors: those of QuadraticPart::build().
+  static Result<WallCompliance> solve(const Tissue& tissue, std::vector<WallPoint> points,
+                                      const Progress& progress = {});
 
   std::vector<WallPoint> points;
   MatX among;             ///< [mm/N] (3w × 3w) displacement of points per force on points, symmetric

@@ -2,9 +2,11 @@
 #pragma once
 
 #include "stylet/fem/tissue.hpp"
+#include "stylet/geom/locator.hpp"
 #include "stylet/geom/topology.hpp"
 #include "stylet/probe/capsule.hpp"
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,7 +20,14 @@ struct WallPoint {
   Vec3 outward = Vec3::UnitZ();     ///< unit vector from the lumen into the wall, mean of the area
   double area_mm2 = 0.0;
   std::vector<std::pair<Index, double>> weights;  ///< displacement nodes and their share; the shares' sum is 1
+  /// Material points, in elements of the mesh, that stand for the area, and their share; the shares' sum is 1.
+  std::vector<std::pair<MaterialPoint, double>> pieces;
 };
+
+/// The displacement nodes of a tissue and their share in the mean over an area.
+/// @param number_of function: number in the tissue of an element of the mesh on which the area was made
+std::vector<std::pair<Index, double>> area_weights(const WallPoint& point, const Tissue& tissue,
+                                                   const std::function<Index(Index tet)>& number_of);
 
 /// Which part of a surface a probe can press, and how finely.
 struct WallReach {
