@@ -124,7 +124,7 @@ Result<std::optional<DoseEvaluation>> dose_without_probe(const ImplantPlan& of, 
   return std::optional<DoseEvaluation>(*std::move(dose));
 }
 
-/// What a user has to know about the probe of the scenario.
+/// Sentences that say where the figures of the implant leave the scenario's probe out.
 std::vector<std::string> probe_warnings(const Scenario& scenario, const ImplantPlan& of, bool found) {
   if (scenario.probe.kind == ProbeKind::none) return {};
   if (of.plan.implant == Implant::temporary)
