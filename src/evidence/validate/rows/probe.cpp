@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 
 namespace stylet::validate {
@@ -32,10 +33,19 @@ struct Flattened {
   Curve length{.label = "superior-inferior", .x = {}, .y = {}};
 };
 
-/// The probe in the demo patient, made once for all rows.
+/// The gland of the demo patient under a bare probe and under a probe in a balloon, each found once for all rows.
 class ProbeStudy {
  public:
   Result<Flattened> flatten(double to_percent, double balloon_mm) {
+    const auto known = found_.find(balloon_mm);
+    if (known != found_.end()) return known->second;
+    auto found = find(to_percent, balloon_mm);
+    if (found) found_.emplace(balloon_mm, *found);
+    return found;
+  }
+
+ private:
+  Result<Flattened> find(double to_percent, double balloon_mm) {
     if (!demo_) {
       auto demo = measure::probed_demo(kProbeNodes);
       if (!demo) return demo.error();
@@ -65,8 +75,8 @@ class ProbeStudy {
                    "Look at the wall that the probe reaches");
   }
 
- private:
   std::unique_ptr<measure::ProbedDemo> demo_;
+  std::map<double, Flattened> found_;  ///< by balloon_mm; each study of patients has its own balloon and flattening
 };
 
 enum class Size { width, length, volume };
