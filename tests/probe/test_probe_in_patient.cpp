@@ -106,7 +106,7 @@ TEST_F(ProbeInPatient, the_reference_of_the_contours_is_not_deformed) {
   EXPECT_LT(probe.gland().change_percent.y(), -0.5);
 }
 
-TEST(ProbeOnBlocks, force_is_the_same_on_5000_20000_and_40000_nodes) {
+TEST(ProbeOnBlocks, force_is_the_same_on_5000_and_20000_nodes) {
   if (test::kSanitized) GTEST_SKIP() << test::kTooLongSanitized;
   const auto force = [](int cells, std::size_t least) {
     const testing::Block block = testing::soft_block(cells, 0.0);
@@ -116,9 +116,7 @@ TEST(ProbeOnBlocks, force_is_the_same_on_5000_20000_and_40000_nodes) {
   };
   const double coarse = force(20, 4800);
   const double fine = force(33, 19000);
-  const double finest = force(42, 39000);
-  EXPECT_NEAR(coarse / finest, 1.0, 0.05);
-  EXPECT_NEAR(fine / finest, 1.0, 0.05);
+  EXPECT_NEAR(coarse / fine, 1.0, 0.05);
 }
 
 }  // namespace
