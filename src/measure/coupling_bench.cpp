@@ -118,7 +118,7 @@ struct Offline {
 using OfflineOf = std::map<std::pair<std::string, std::string>, Offline>;  // method, element
 
 Result<CouplingRow> carry_out(const Case& one, const MeshedAnatomy& anatomy, double depth_mm, OfflineOf& known,
-                              const Progress& progress) {
+                              KnownTargets& targets, const Progress& progress) {
   CouplingRow row;
   row.study = one.study;
   row.method = one.method;
@@ -139,7 +139,7 @@ Result<CouplingRow> carry_out(const Case& one, const MeshedAnatomy& anatomy, dou
     if ((*model)->spread()) made.compliance.spread = (*model)->spread()->matrix();
     known[{one.method, one.element}] = std::move(made);
   }
-  const auto run = record_run(*model, progress);
+  const auto run = record_run(*model, targets, progress);
   if (!run) return run.error();
   row.element = to_string((*model)->tissue().element());
   row.nodes = (*model)->mesh().node_count();
@@ -177,15 +177,17 @@ Result<std::vector<CouplingRow>> bench_coupling(const CouplingBenchOptions& opti
   Index meshed = 0;
   MeshedAnatomy anatomy;
   OfflineOf known;
+  std::optional<KnownTargets> targets;
   for (const Case& one : cases(options.largest, options.mesh_only)) {
     if (one.nodes != meshed) {
       meshed = one.nodes;
       known.clear();
+      targets.emplace();
       auto made = mesh_demo(one.nodes, progress);
       if (!made) return made.error();
       anatomy = std::move(*made);
     }
-    auto row = carry_out(one, anatomy, options.depth_mm, known, progress);
+    auto row = carry_out(one, anatomy, options.depth_mm, known, *targets, progress);
     if (!row) return row.error();
     // The finest row comes first. The study of geometry is compared with the finest mesh of the study of meshes.
     const auto finest = std::find_if(rows.begin(), rows.end(), [&](const CouplingRow& r) {

@@ -32,10 +32,16 @@ const Event* RecordedRun::event(EventKind kind, const std::string& region) const
 }
 
 Result<RecordedRun> record_run(const std::shared_ptr<const Model>& model, const Progress& progress) {
+  KnownTargets none;
+  return record_run(model, none, progress);
+}
+
+Result<RecordedRun> record_run(const std::shared_ptr<const Model>& model, KnownTargets& targets,
+                               const Progress& progress) {
   RecordedRun recorded;
   recorded.model = model;
   Keeper keeper(recorded);
-  auto summary = run(model, keeper, progress);
+  auto summary = run(model, keeper, targets, progress);
   if (!summary) return summary.error();
   recorded.summary = std::move(*summary);
   return recorded;

@@ -6,6 +6,7 @@
 #include "stylet/core/version.hpp"
 #include "stylet/sim/gland_watch.hpp"
 #include "stylet/sim/harms.hpp"
+#include "stylet/sim/prediction.hpp"
 #include "stylet/sim/recorded_steps.hpp"
 #include "stylet/sim/target_motion.hpp"
 #include "stylet/sim/unbroken_surface.hpp"
@@ -37,8 +38,13 @@ double quantile(const std::vector<double>& sorted, double q) {
 
 class Runner {
  public:
-  Runner(const std::shared_ptr<const Model>& model, RunObserver& observer, const Progress& progress)
-      : model_(model), simulation_(model, needles_of(*model)), observer_(observer), progress_(progress) {
+  Runner(const std::shared_ptr<const Model>& model, RunObserver& observer, KnownTargets& targets,
+         const Progress& progress)
+      : model_(model),
+        simulation_(model, needles_of(*model)),
+        observer_(observer),
+        targets_(targets),
+        progress_(progress) {
     summary_.version = version();
     summary_.scenario = model->scenario().name;
     summary_.nodes = model->mesh().node_count();
@@ -235,7 +241,7 @@ class Runner {
 
   Result<> prepare_target_motion() {
     if (target_motion_) return Ok{};
-    auto motion = TargetMotion::of(*model_, progress_);
+    auto motion = targets_.of(model_, progress_);
     if (!motion) return motion.error();
     target_motion_ = std::move(*motion);
     return Ok{};
@@ -286,6 +292,7 @@ class Runner {
   Simulation simulation_;
   std::optional<TargetMotion> target_motion_;  ///< solved for before the first step; empty without a target
   RunObserver& observer_;
+  KnownTargets& targets_;
   const Progress& progress_;
   double peak_N_ = 0.0;  ///< largest magnitude of the hand's force
   double total_s_ = 0.0;
@@ -300,7 +307,13 @@ class Runner {
 }  // namespace
 
 Result<Summary> run(const std::shared_ptr<const Model>& model, RunObserver& observer, const Progress& progress) {
-  return Runner(model, observer, progress).all();
+  KnownTargets none;
+  return run(model, observer, none, progress);
+}
+
+Result<Summary> run(const std::shared_ptr<const Model>& model, RunObserver& observer, KnownTargets& targets,
+                    const Progress& progress) {
+  return Runner(model, observer, targets, progress).all();
 }
 
 Result<Summary> run_recorded(const std::shared_ptr<const Model>& model, std::span<const Step> steps,
@@ -322,7 +335,8 @@ Result<Summary> run_recorded(const std::shared_ptr<const Model>& model, std::spa
                          fmt::format("there cannot be {} steps at rest before it", steps[k].rest_steps),
                          "Give 0 or more, and 0 before the first step");
   }
-  return Runner(model, observer, progress).recorded(steps);
+  KnownTargets none;
+  return Runner(model, observer, none, progress).recorded(steps);
 }
 
 }  // namespace stylet

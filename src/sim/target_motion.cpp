@@ -20,6 +20,10 @@ Accuracy affordable(Index nodes) {
                               : Accuracy::of_the_tissue;
 }
 
+bool same_mesh(const TetMesh& a, const TetMesh& b) {
+  return &a == &b || (a.nodes == b.nodes && a.tets == b.tets && a.tet_region == b.tet_region);
+}
+
 }  // namespace
 
 Result<TargetMotion> TargetMotion::of(const Model& model, const Progress& progress) {
@@ -32,7 +36,9 @@ Result<TargetMotion> TargetMotion::of(const Model& model, const Progress& progre
 std::optional<TargetMotion> TargetMotion::shared_with(const Model& other) const {
   // The factor of the tissue orders the nodes of the needle's way last, so its rounding errors depend on the way.
   if (affordable(other.mesh().node_count()) == Accuracy::of_the_tissue) return std::nullopt;
-  if (other.supports().nodes != model_->supports().nodes) return std::nullopt;
+  if (other.supports().nodes != model_->supports().nodes || other.target_regions() != model_->target_regions() ||
+      other.tissue().materials() != model_->tissue().materials() || !same_mesh(other.mesh(), model_->mesh()))
+    return std::nullopt;
   return TargetMotion(other, response_);
 }
 

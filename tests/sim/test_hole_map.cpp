@@ -250,6 +250,34 @@ TEST(HolePrediction, without_needles_in_place_says_nothing_about_them) {
   EXPECT_FALSE(alone->in_place);
 }
 
+TEST(KnownTargets, is_used_again_for_the_same_tissue_only) {
+  const Scenario s = scenario_beside_needles();
+  const auto model = compiled(s);
+  const auto target = TargetMotion::of(*model);
+  ASSERT_TRUE(target);
+  EXPECT_TRUE(target->shared_with(*compiled(s)));
+  Scenario softer = s;
+  softer.tissue["prostate"] = tissue_of(s, "prostate");
+  softer.tissue["prostate"].young_kPa *= 0.9;
+  EXPECT_FALSE(target->shared_with(*compiled(softer)));
+  Scenario free = s;
+  free.fixed.outer = OuterSupport::none;
+  EXPECT_FALSE(target->shared_with(*compiled(free)));
+}
+
+TEST(KnownTargets, does_not_change_a_run) {
+  const auto model = compiled(scenario_beside_needles());
+  KnownTargets targets;
+  Kept alone, first, second;
+  const auto expected = run(model, alone);
+  const auto with = run(model, first, targets);
+  const auto again = run(model, second, targets);
+  ASSERT_TRUE(expected && with && again);
+  EXPECT_EQ(again->target_shift_centroid_mm, expected->target_shift_centroid_mm);
+  EXPECT_EQ(again->gland->shift_max_mm, expected->gland->shift_max_mm);
+  EXPECT_EQ(with->target_shift_centroid_mm, expected->target_shift_centroid_mm);
+}
+
 // The two ways of counting differ by the motion of the tissue that the needles in place have caused: they have pushed
 // the gland to superior, and the tip finds tissue from further inferior at the planned place.
 TEST(NeedlesInPlace, hold_the_gland_where_they_have_pushed_it) {

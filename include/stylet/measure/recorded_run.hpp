@@ -3,6 +3,7 @@
 
 #include "stylet/core/progress.hpp"
 #include "stylet/sim/model.hpp"
+#include "stylet/sim/prediction.hpp"
 #include "stylet/sim/run.hpp"
 
 #include <memory>
@@ -24,5 +25,10 @@ struct RecordedRun {
 
 /// Simulates all insertions of a model.
 Result<RecordedRun> record_run(const std::shared_ptr<const Model>& model, const Progress& progress = {});
+
+/// The same for one of several runs of one patient.
+/// @param targets cache of target motions
+Result<RecordedRun> record_run(const std::shared_ptr<const Model>& model, KnownTargets& targets,
+                               const Progress& progress = {});
 
 }  // namespace stylet::measure

@@ -7,6 +7,8 @@
 
 namespace stylet {
 
+class KnownTargets;
+
 /// Receives the steps and frames of a run. A call may return an Error to stop the run.
 class RunObserver {
  public:
@@ -21,6 +23,11 @@ class RunObserver {
 /// "after"; and unlabelled ones at scenario.output.frames_per_s, at most output.max_frames.
 /// @return the results; apart from the step times, two runs give the same numbers
 Result<Summary> run(const std::shared_ptr<const Model>& model, RunObserver& observer, const Progress& progress = {});
+
+/// The same for one of several runs of one patient: solving for the motion of the target takes more than half of a short
+/// run, and the cache keeps it for the next run.
+Result<Summary> run(const std::shared_ptr<const Model>& model, RunObserver& observer, KnownTargets& targets,
+                    const Progress& progress = {});
 
 /// Simulates the model's only insertion with the base motion of a recording, step by step. With the model that the
 /// recording was made with, all numbers are the same to the last bit, except where the needle had outrun its compliance

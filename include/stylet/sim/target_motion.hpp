@@ -16,9 +16,10 @@ class TargetMotion {
   /// @param model must outlive the result
   static Result<TargetMotion> of(const Model& model, const Progress& progress = {});
 
-  /// The target motion of another model, sharing this solution if it is the same to the last bit: the same nodes must
-  /// be held, and the mesh must be small enough that the solution does not depend on the needle's way. Otherwise empty.
-  /// @param other must have the same mesh, materials and target, and must outlive the result
+  /// The target motion of another model, sharing this solution if it is the same to the last bit: mesh, materials,
+  /// target and held nodes must be the same, and the mesh must be small enough that the solution does not depend on the
+  /// needle's way. Otherwise empty.
+  /// @param other must outlive the result
   [[nodiscard]] std::optional<TargetMotion> shared_with(const Model& other) const;
 
   /// The motion of the target at one moment.

@@ -37,7 +37,7 @@ Result<std::shared_ptr<const measure::RecordedRun>> Context::demo_run() {
     if (!mesh) return mesh.error();
     const auto model = Model::compile(scenario, *mesh, "the demo", {}, progress_);
     if (!model) return model.error();
-    auto recorded = measure::record_run(*model, progress_);
+    auto recorded = measure::record_run(*model, targets_, progress_);
     if (!recorded) return recorded.error();
     demo_run_ = std::make_shared<const measure::RecordedRun>(std::move(*recorded));
   }

@@ -52,7 +52,7 @@ Result<std::shared_ptr<const measure::RecordedRun>> Patients::run(Context& conte
   if (!own_mesh) return own_mesh.error();
   const auto model = Model::compile(scenario, *own_mesh, "the patient", {}, context.progress());
   if (!model) return model.error();
-  auto recorded = measure::record_run(*model, context.progress());
+  auto recorded = measure::record_run(*model, context.targets(), context.progress());
   if (!recorded) return recorded.error();
   kept = std::make_shared<const measure::RecordedRun>(std::move(*recorded));
   return kept;

@@ -83,7 +83,7 @@ class Study {
     scenario_.output.frames_per_s = 0.0;
     scenario_.needle.lumen_diameter_mm.reset();  // the lumen follows the diameter
     if (quick_) {
-      scenario_.mesh.nodes = 600;
+      scenario_.mesh.nodes = 800;
       scenario_.run.dt_ms = 4.0;
       scenario_.insertions.front().depth_mm = 70.0;
       scenario_.insertions.front().retract = false;
@@ -107,10 +107,10 @@ class Study {
     return Ok{};
   }
 
-  [[nodiscard]] Result<Summary> summary_of(const Scenario& scenario) const {
+  [[nodiscard]] Result<Summary> summary_of(const Scenario& scenario) {
     const auto model = Model::compile(scenario, mesh_, "sensitivity");
     if (!model) return model.error();
-    auto recorded = measure::record_run(*model);
+    auto recorded = measure::record_run(*model, targets_);
     if (!recorded) return recorded.error();
     return std::move(recorded->summary);
   }
@@ -230,6 +230,7 @@ class Study {
   const Progress& progress_;
   Scenario scenario_;
   TetMesh mesh_;
+  KnownTargets targets_;
   std::vector<std::string> regions_;
   std::vector<Job> jobs_;
   Sensitivity out_;

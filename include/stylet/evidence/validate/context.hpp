@@ -23,6 +23,8 @@ class Context {
 
   [[nodiscard]] bool quick() const { return quick_; }
   [[nodiscard]] const Progress& progress() const { return progress_; }
+  /// Cache of target motions for runs of the same patient.
+  KnownTargets& targets() { return targets_; }
 
   /// The path of a file of the shared data; empty if it does not exist.
   [[nodiscard]] std::optional<std::filesystem::path> data(const std::string& file) const;
@@ -40,6 +42,7 @@ class Context {
   bool quick_;
   std::filesystem::path data_;
   Progress progress_;
+  KnownTargets targets_;
   std::optional<TetMesh> demo_mesh_;
   std::shared_ptr<const measure::RecordedRun> demo_run_;
   std::vector<measure::CouplingRow> demo_on_meshes_;

@@ -22,7 +22,7 @@ Result<measure::RecordedRun> run_demo(Context& context, const Scenario& scenario
   complete.output.frames_per_s = 0.0;
   const auto model = Model::compile(complete, *mesh, "the demo", {}, context.progress());
   if (!model) return model.error();
-  return measure::record_run(*model, context.progress());
+  return measure::record_run(*model, context.targets(), context.progress());
 }
 
 /// Results of needles through holes on all sides of the gland, one after the other.
