@@ -27,10 +27,10 @@ PlanOfHole plans_of(const Scenario& scenario) {
   return [plan = scenario.insertions.front()](const std::string& hole) { return plan_through(plan, hole); };
 }
 
-/// Waits until a condition on the map holds, at most one minute. @return the newest map
+/// Waits until a condition on the map holds, at most five minutes. @return the newest map
 LiveMap when(MapMaker& maker, const std::function<bool(const LiveMap&)>& is_true) {
   LiveMap map;
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(5);
   while (std::chrono::steady_clock::now() < end) {
     if (auto news = maker.news()) map = std::move(*news);
     if (is_true(map)) break;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "stylet/geom/box_mesh.hpp"
+#include "stylet/sim/prediction.hpp"
 #include "stylet/sim/run.hpp"
 
 #include <gtest/gtest.h>
@@ -83,7 +84,8 @@ struct Finished {
   Summary summary;
 
   explicit Finished(std::shared_ptr<const Model> model_) : model(std::move(model_)) {
-    const auto result = run(model, kept);
+    static KnownTargets targets;
+    const auto result = run(model, kept, targets);
     if (!result) throw std::runtime_error(result.error().message());
     summary = *result;
   }
