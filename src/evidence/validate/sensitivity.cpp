@@ -83,7 +83,7 @@ class Study {
     scenario_.output.frames_per_s = 0.0;
     scenario_.needle.lumen_diameter_mm.reset();  // the lumen follows the diameter
     if (quick_) {
-      scenario_.mesh.nodes = 800;
+      scenario_.mesh.nodes = 600;
       scenario_.run.dt_ms = 4.0;
       scenario_.insertions.front().depth_mm = 70.0;
       scenario_.insertions.front().retract = false;
