@@ -24,8 +24,8 @@ class RunObserver {
 /// @return the results; apart from the step times, two runs give the same numbers
 Result<Summary> run(const std::shared_ptr<const Model>& model, RunObserver& observer, const Progress& progress = {});
 
-/// The same for one of several runs of one patient: solving for the motion of the target takes more than half of a short
-/// run, and the cache keeps it for the next run.
+/// The same for one of several runs of one patient: solving for the motion of the target takes more than half of a
+/// short run, and the cache keeps it for the next run.
 Result<Summary> run(const std::shared_ptr<const Model>& model, RunObserver& observer, KnownTargets& targets,
                     const Progress& progress = {});
 
