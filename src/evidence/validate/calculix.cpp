@@ -86,8 +86,8 @@ std::string material_text(const Material& material, Geometry geometry) {
   return fmt::format("*HYPERELASTIC, NEO HOOKE\n{}, {}\n", digits(0.5 * material.mu()), digits(2.0 / bulk_MPa));
 }
 
-/// Increments of 1/4 of the load; where they do not converge, CalculiX reduces them to 1/500 at least.
-constexpr const char* kFiniteStep = "*STEP, NLGEOM, INC=60\n*STATIC\n0.25, 1., 0.002, 0.25\n";
+/// Increments of 1/8 of the load; where they do not converge, CalculiX reduces them to 1/500 at least.
+constexpr const char* kFiniteStep = "*STEP, NLGEOM, INC=60\n*STATIC\n0.125, 1., 0.002, 0.125\n";
 
 }  // namespace
 
