@@ -304,15 +304,6 @@ TEST(WallPoints, their_number_does_not_depend_on_the_mesh) {
   EXPECT_NEAR(static_cast<double>(count(6)), static_cast<double>(count(14)), 12.0);
 }
 
-TEST(WallPoints, force_does_not_depend_on_the_mesh_of_the_wall) {
-  const auto force = [](int cells) {
-    const Block block = soft_block(cells, 0.0);
-    ProbeContact contact(block.wall(reach_of(lying_on(0.0), 2.5)));
-    return contact.press(lying_on(5.0)).force_N.z();
-  };
-  EXPECT_NEAR(force(14) / force(24), 1.0, 0.05);
-}
-
 TEST(WallPoints, a_patient_without_rectum_is_refused_with_a_cure) {
   const TetMesh mesh = box_mesh({0, 0, 0}, {10, 10, 10}, {2, 2, 2});
   const auto wall = rectal_wall(mesh, Topology(mesh), "case.toml");
