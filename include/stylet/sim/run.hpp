@@ -24,8 +24,9 @@ class RunObserver {
 /// @return the results; apart from the step times, two runs give the same numbers
 Result<Summary> run(const std::shared_ptr<const Model>& model, RunObserver& observer, const Progress& progress = {});
 
-/// The same for one of several runs of one patient: solving for the motion of the target takes more than half of a
-/// short run, and the cache keeps it for the next run.
+/// The same for one of several runs of one patient. Solving for the motion of the target is a large part of a short
+/// run.
+/// @param targets cache, from which the next run takes that motion where its tissue is the same
 Result<Summary> run(const std::shared_ptr<const Model>& model, RunObserver& observer, KnownTargets& targets,
                     const Progress& progress = {});
 

@@ -11,6 +11,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <utility>
 
 namespace stylet::validate {
 
@@ -37,10 +38,11 @@ struct Flattened {
 class ProbeStudy {
  public:
   Result<Flattened> flatten(double to_percent, double balloon_mm) {
-    const auto known = found_.find(balloon_mm);
+    const std::pair study(to_percent, balloon_mm);
+    const auto known = found_.find(study);
     if (known != found_.end()) return known->second;
     auto found = find(to_percent, balloon_mm);
-    if (found) found_.emplace(balloon_mm, *found);
+    if (found) found_.emplace(study, *found);
     return found;
   }
 
@@ -76,7 +78,7 @@ class ProbeStudy {
   }
 
   std::unique_ptr<measure::ProbedDemo> demo_;
-  std::map<double, Flattened> found_;  ///< by balloon_mm; each study of patients has its own balloon and flattening
+  std::map<std::pair<double, double>, Flattened> found_;  ///< by to_percent and balloon_mm
 };
 
 enum class Size { width, length, volume };
