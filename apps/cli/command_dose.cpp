@@ -143,6 +143,8 @@ void print(const DoseEvaluation& e, Console& console) {
       "Source {}, formalism {}, {}; {}", e.source.name, to_string(e.formalism),
       e.prescription_Gy > 0 ? fmt::format("prescription {:g} Gy", e.prescription_Gy) : std::string("no prescription"),
       e.quantity));
+  if (const std::string dates = strength_sentence(e.strength); !dates.empty() && !strength_is_in_doubt(e.strength))
+    console.say(dates);  // dates in doubt are among the warnings
   if (!e.structures.empty()) console.say(figures_text(e));
   if (!e.goals.empty() && !e.structures.empty() && e.prescription_Gy > 0) console.say(goals_text(e));
   if (e.comparison) {

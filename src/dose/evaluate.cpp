@@ -236,6 +236,9 @@ void assume(DoseEvaluation& e, const DoseOptions& options) {
         fmt::format("{} of {} sources have no direction in the plan; they are taken along z, inferior to superior.",
                     without, e.plan.sources.size()));
   }
+  if (const std::string dates = strength_sentence(e.strength); !dates.empty()) {
+    (strength_is_in_doubt(e.strength) ? e.warnings : e.assumptions).push_back(dates);
+  }
   if (e.plan.implant == Implant::permanent) {
     e.assumptions.push_back(
         options.decay_days != 0.0
@@ -292,6 +295,7 @@ Result<DoseEvaluation> evaluate_dose(const DosePlan& plan, const SourceModel& so
   DoseEvaluation e;
   e.plan = plan;
   e.source = source;
+  e.strength = strength_age(plan, source.half_life_days, options.decay_days);
   e.formalism = options.formalism;
   e.quantity = words_of(plan, options);
   e.prescription_Gy = options.prescription_Gy > 0.0 ? options.prescription_Gy : plan.prescription_Gy;

@@ -7,7 +7,9 @@
 #include "stylet/dose/dose_plan.hpp"
 #include "stylet/dose/dose_volume.hpp"
 #include "stylet/dose/goals.hpp"
+#include "stylet/dose/patient_record.hpp"
 #include "stylet/dose/source_model.hpp"
+#include "stylet/dose/strength_age.hpp"
 #include "stylet/dose/structure_samples.hpp"
 #include "stylet/dose/tg43.hpp"
 #include "stylet/geom/contours.hpp"
@@ -58,6 +60,8 @@ struct DoseComparison {
 /// A plan with its dose: everything that report, JSON and tables of `stylet dose` say.
 struct DoseEvaluation {
   DosePlan plan;
+  PatientRecord patient;  ///< whose plan it is; evaluate_dose() leaves it empty
+  StrengthAge strength;   ///< date of the strengths beside that of the plan, with the decay between
   SourceModel source;
   DoseFormalism formalism = DoseFormalism::line2d;
   std::string quantity;          ///< "total dose", "initial dose rate …", what dose_Gy means

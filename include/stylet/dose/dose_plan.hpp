@@ -37,6 +37,7 @@ struct DosePlan {
   double source_length_mm = 0.0;         ///< length of the active part [mm] as the plan says; 0: it does not say
   double source_diameter_mm = 0.0;       ///< diameter of the active part [mm]; 0: the plan does not say
   std::string strength_date;             ///< date, and time where there is one, of the strength, as in the file
+  std::string plan_date;                 ///< date, and time where there is one, of the plan, as in the file
   double prescription_Gy = 0.0;          ///< prescribed dose [Gy]; 0: the plan does not say
   std::vector<PlannedSource> sources;    ///< at least one
   std::vector<std::string> notes;        ///< sentences for the user: what the reader decided or left out

@@ -46,7 +46,7 @@ void fields(auto& wire, MeshWithNotes& m) { wire(m.mesh, m.notes); }
 void fields(auto& wire, PlannedSource& s) { wire(s.at_mm, s.axis, s.has_axis, s.strength_U, s.dwell_s, s.needle); }
 void fields(auto& wire, DosePlan& p) {
   wire(p.file, p.label, p.implant, p.frame_of_reference, p.source_model, p.isotope, p.half_life_days,
-       p.source_length_mm, p.source_diameter_mm, p.strength_date, p.prescription_Gy, p.sources, p.notes);
+       p.source_length_mm, p.source_diameter_mm, p.strength_date, p.plan_date, p.prescription_Gy, p.sources, p.notes);
 }
 void fields(auto& wire, DoseGrid& g) {
   wire(g.file, g.frame_of_reference, g.size, g.origin_mm, g.spacing_mm, g.direction, g.dose_Gy, g.quantum_Gy,

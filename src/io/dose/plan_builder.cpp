@@ -2,6 +2,7 @@
 #include "dose/plan_builder.hpp"
 
 #include "detail/reach.hpp"
+#include "stylet/dose/strength_age.hpp"
 
 #include <fmt/format.h>
 
@@ -79,6 +80,12 @@ Result<> PlanBuilder::add(const PlanNeedle& needle, const PlanTemplate& grid, co
 Result<DosePlan> PlanBuilder::finish() {
   if (plan.sources.empty())
     return input_error(plan.file, "the plan has no seed", "Add seeds, or needles with trains of seeds");
+  for (const auto& [key, date] :
+       {std::pair("strength_date", &plan.strength_date), std::pair("plan_date", &plan.plan_date)}) {
+    if (date->empty() || parse_date_time(*date)) continue;
+    return input_error(fmt::format("{}, {}", plan.file, key), fmt::format("'{}' is no date of the calendar", *date),
+                       "Write it as 2024-01-31, with a time as 2024-01-31 10:15");
+  }
   std::size_t twins = 0;
   for (std::size_t a = 0; a < plan.sources.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {

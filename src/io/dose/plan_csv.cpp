@@ -122,6 +122,7 @@ Result<DosePlan> parse_plan_csv(const std::filesystem::path& path) {
   plan.source_model = key_text(*table, "source");
   plan.frame_of_reference = key_text(*table, "frame_of_reference");
   plan.strength_date = key_text(*table, "strength_date");
+  plan.plan_date = key_text(*table, "plan_date");
   if (table->keys.contains("implant")) {
     if (Result<> set = set_implant(key_text(*table, "implant"), table->file, plan); !set) return set.error();
   }

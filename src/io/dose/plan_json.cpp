@@ -19,9 +19,9 @@ using detail::JsonObject;
 using detail::PlanBuilder;
 using detail::PlanTemplate;
 
-const std::vector<std::string> kPlanKeys{"format",          "version", "units",    "frame",      "frame_of_reference",
-                                         "label",           "implant", "source",   "strength_U", "strength_date",
-                                         "prescription_Gy", "seeds",   "template", "needles"};
+const std::vector<std::string> kPlanKeys{"format",    "version",         "units",  "frame",      "frame_of_reference",
+                                         "label",     "implant",         "source", "strength_U", "strength_date",
+                                         "plan_date", "prescription_Gy", "seeds",  "template",   "needles"};
 const std::vector<std::string> kSeedKeys{"position_mm", "axis", "strength_U", "needle", "dwell_s"};
 const std::vector<std::string> kTemplateKeys{"origin_mm",        "pitch_mm",     "columns",  "rows",
                                              "direction",        "left",         "anterior", "seed_length_mm",
@@ -55,11 +55,11 @@ Result<> read_header(const JsonObject& object, PlanBuilder& builder, double& str
   if (Result<> keys = object.check_keys(kPlanKeys); !keys) return keys;
   std::string units, frame, implant = "permanent";
   DosePlan& plan = builder.plan;
-  Result<> taken =
-      all_of(object.take("units", units), object.take("frame", frame), object.take("implant", implant),
-             object.take("frame_of_reference", plan.frame_of_reference), object.take("label", plan.label),
-             object.take("source", plan.source_model), object.take("strength_U", strength_U),
-             object.take("strength_date", plan.strength_date), object.take("prescription_Gy", plan.prescription_Gy));
+  Result<> taken = all_of(object.take("units", units), object.take("frame", frame), object.take("implant", implant),
+                          object.take("frame_of_reference", plan.frame_of_reference), object.take("label", plan.label),
+                          object.take("source", plan.source_model), object.take("strength_U", strength_U),
+                          object.take("strength_date", plan.strength_date), object.take("plan_date", plan.plan_date),
+                          object.take("prescription_Gy", plan.prescription_Gy));
   if (!taken) return taken;
   if (units != "mm")
     return input_error(object.place("units"), fmt::format("the units are '{}', 'mm' is expected", units),
@@ -159,6 +159,7 @@ Result<> write_plan_json(const DosePlan& plan, const std::filesystem::path& path
   json["implant"] = to_string(plan.implant);
   text("source", plan.source_model);
   text("strength_date", plan.strength_date);
+  text("plan_date", plan.plan_date);
   if (plan.prescription_Gy > 0.0) json["prescription_Gy"] = plan.prescription_Gy;
   for (const PlannedSource& s : plan.sources) {
     nlohmann::ordered_json seed{{"position_mm", {s.at_mm.x(), s.at_mm.y(), s.at_mm.z()}}, {"strength_U", s.strength_U}};

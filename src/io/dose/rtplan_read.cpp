@@ -56,6 +56,7 @@ class RtplanReader {
   Result<DosePlan> run() {
     plan_.label = text_of(data_, DCM_RTPlanLabel);
     plan_.frame_of_reference = text_of(data_, DCM_FrameOfReferenceUID);
+    plan_.plan_date = trimmed(text_of(data_, DCM_RTPlanDate) + " " + text_of(data_, DCM_RTPlanTime));
     read_sources();
     const auto setups = items_of(data_, DCM_ApplicationSetupSequence);
     if (setups.empty()) {

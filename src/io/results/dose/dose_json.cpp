@@ -57,6 +57,34 @@ OrderedJson comparison_json(const std::optional<DoseComparison>& comparison) {
           {"file", comparison->file}};
 }
 
+/// A text, or null where it is empty.
+OrderedJson text_or_null(const std::string& text) { return text.empty() ? OrderedJson(nullptr) : OrderedJson(text); }
+
+OrderedJson number_or_null(const std::optional<double>& number) {
+  return number ? OrderedJson(*number) : OrderedJson(nullptr);
+}
+
+OrderedJson strength_json(const StrengthAge& age) {
+  return {{"date", text_or_null(age.strength_date)},
+          {"plan_date", text_or_null(age.plan_date)},
+          {"days_between", number_or_null(age.days)},
+          {"decay_factor_between", number_or_null(age.factor_between)},
+          {"decay_factor_used", age.factor_used}};
+}
+
+OrderedJson patient_json(const PatientRecord& p) {
+  return {{"id", text_or_null(p.id)},
+          {"name", text_or_null(p.name)},
+          {"birth_date", text_or_null(p.birth_date)},
+          {"sex", text_or_null(p.sex)},
+          {"study_uid", text_or_null(p.study_uid)},
+          {"study_date", text_or_null(p.study_date)},
+          {"accession_number", text_or_null(p.accession_number)},
+          {"frame_of_reference", text_or_null(p.frame_of_reference)},
+          {"structure_set", text_or_null(p.structure_set)},
+          {"from", text_or_null(p.file)}};
+}
+
 OrderedJson seed_row(const PlannedSource& seed) {
   return {{"position_mm", vector_list(seed.at_mm)},
           {"axis", vector_list(seed.axis)},
@@ -83,6 +111,8 @@ std::string dose_json(const DoseEvaluation& evaluation) {
        evaluation.prescription_Gy > 0.0 ? OrderedJson(evaluation.prescription_Gy) : OrderedJson(nullptr)},
       {"quantity", evaluation.quantity},
       {"implant", to_string(evaluation.plan.implant)},
+      {"patient", patient_json(evaluation.patient)},
+      {"strength", strength_json(evaluation.strength)},
       {"dvh", dvh},
       {"goals", goals},
       {"points", points},
