@@ -9,6 +9,7 @@
 #include "stylet/dose/fitting_sources.hpp"
 #include "stylet/io/dose_io.hpp"
 #include "stylet/io/dose_results.hpp"
+#include "stylet/io/patient_record_io.hpp"
 #include "stylet/patient/dose_structures.hpp"
 #include "stylet/patient/source_choice.hpp"
 
@@ -23,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct DoseArguments {
-  std::string plan, structures, source, output, formalism, quantity, compare, points, goals;
+  std::string plan, structures, patient_from, source, output, formalism, quantity, compare, points, goals;
   std::vector<double> compare_shift_mm;
   std::vector<std::string> regions, skip;
   double phi_an = 0, prescription_Gy = 0, days = 0, decay_days = 0, grid_mm = 1, step_mm = 0;
@@ -143,6 +144,7 @@ void print(const DoseEvaluation& e, Console& console) {
       "Source {}, formalism {}, {}; {}", e.source.name, to_string(e.formalism),
       e.prescription_Gy > 0 ? fmt::format("prescription {:g} Gy", e.prescription_Gy) : std::string("no prescription"),
       e.quantity));
+  console.say(patient_sentence(e.patient));
   if (const std::string dates = strength_sentence(e.strength); !dates.empty() && !strength_is_in_doubt(e.strength))
     console.say(dates);  // dates in doubt are among the warnings
   if (!e.structures.empty()) console.say(figures_text(e));
@@ -164,10 +166,20 @@ Result<> run_dose(const DoseArguments& arguments, Console& console) {
   if (!options) return options.error();
   const Result<DoseStructures> structures = structures_of(arguments, *plan, console);
   if (!structures) return structures.error();
+  const std::string& frame =
+      plan->frame_of_reference.empty() ? structures->frame_of_reference : plan->frame_of_reference;
+  const Result<FoundPatient> patient = patient_of({{arguments.plan, arguments.structures, arguments.compare},
+                                                   arguments.patient_from,
+                                                   frame,
+                                                   arguments.ignore_frame});
+  if (!patient) return patient.error();
   Result<DoseEvaluation> e = evaluate_dose(*plan, *source, structures->structures, *options, console.progress());
   if (!e) return e.error();
   e->warnings.insert(e->warnings.end(), structures->notes.begin(), structures->notes.end());
   e->warnings.insert(e->warnings.end(), plan->notes.begin(), plan->notes.end());
+  e->warnings.insert(e->warnings.end(), patient->notes.begin(), patient->notes.end());
+  e->patient = record_of_files(*patient, *plan, *source);
+  e->assumptions.push_back(patient_sentence(*patient));
   if (arguments.ignore_frame) e->assumptions.emplace_back("Frames of reference were not compared, as asked.");
   if (arguments.goals.empty() && !options->goals.empty()) {
     e->assumptions.emplace_back(
@@ -203,6 +215,10 @@ Command add_dose_command(CLI::App& program) {
   app->add_option("PLAN", arguments->plan, "Plan: DICOM RTPLAN, plan JSON, or CSV of seeds")->required();
   app->add_option("--structures", arguments->structures,
                   "Structures: contours (DICOM RTSTRUCT, contour JSON), label mask or tetrahedral mesh")
+      ->type_name("FILE");
+  app->add_option("--patient-from", arguments->patient_from,
+                  "DICOM file whose patient, study, frame of reference and structure set plan.dcm and dose.dcm get "
+                  "(default: those of plan and structures, where they agree)")
       ->type_name("FILE");
   app->add_option("--source", arguments->source,
                   "Source model: a name such as i125_6711, or a JSON file with TG-43 data; no DICOM plan names it")

@@ -3,6 +3,7 @@
 #include "output_path.hpp"
 #include "table.hpp"
 
+#include "stylet/io/patient_record_io.hpp"
 #include "stylet/io/scenario_io.hpp"
 #include "stylet/patient/implant.hpp"
 
@@ -21,6 +22,7 @@ struct ImplantArguments {
   int compensate = 0;
   bool span = false;
   std::string found;
+  std::string patient_from;
 };
 
 bool is_temporary(const ImplantOutcome& outcome) { return implant_of(outcome.history.seeds) == Implant::temporary; }
@@ -184,9 +186,12 @@ Result<> run_implant(const ImplantArguments& arguments, Console& console) {
                                : std::filesystem::path(arguments.output);
   if (Result<> writable = check_output_folder(folder); !writable) return writable;
   if (Result<> kept = check_found_is_no_result(arguments.found, folder); !kept) return kept;
-  const Result<ImplantOutcome> outcome = implant(
-      *scenario, arguments.scenario,
-      {.compensate = arguments.compensate, .span = arguments.span, .found = arguments.found}, console.progress());
+  const Result<ImplantOutcome> outcome = implant(*scenario, arguments.scenario,
+                                                 {.compensate = arguments.compensate,
+                                                  .span = arguments.span,
+                                                  .found = arguments.found,
+                                                  .patient_from = arguments.patient_from},
+                                                 console.progress());
   if (!outcome) return outcome.error();
   for (const std::string& warning : outcome->warnings) console.warn(warning);
   if (Result<> written = write_implant_results(*outcome, folder, console.progress()); !written) return written;
@@ -201,6 +206,7 @@ Result<> run_implant(const ImplantArguments& arguments, Console& console) {
                           outcome->history.needles.size(), temporary ? "catheters" : "needles",
                           outcome->history.seeds.size(), temporary ? "dwell positions" : "seeds",
                           outcome->history.nodes, steps, seconds));
+  console.say(patient_sentence(outcome->delivered.patient));
   console.say(
       fmt::format("Distance of the {} from where they were planned (mean ± standard deviation along the axes)\n",
                   temporary ? "dwell positions" : "seeds") +
@@ -250,6 +256,10 @@ Command add_implant_command(CLI::App& program) {
          "Seeds found on images after the implant, in the coordinates of the plan: match them with the simulated "
          "seeds, and show how much of their errors the simulation explains")
       ->type_name("SEEDS.csv|RTPLAN");
+  app->add_option("--patient-from", arguments->patient_from,
+                  "DICOM file whose patient, study, frame of reference and structure set the DICOM results get "
+                  "(default: those of plan and patient, where they agree)")
+      ->type_name("FILE");
   return {app, [arguments](Console& console) { return run_implant(*arguments, console); }};
 }
 

@@ -29,7 +29,8 @@ Result<> run_phantom(const PhantomArguments& arguments, Console& console) {
   const std::filesystem::path dicom = folder / "phantom.dcm";
   const std::filesystem::path contours = folder / "phantom.json";
   if (Result<> made = make_folder(folder); !made) return made;
-  if (Result<> written = write_rtstruct(patient, dicom); !written) return written;
+  if (Result<> written = write_rtstruct(patient, dicom, {.name = "STYLET^PHANTOM", .id = "STYLET"}); !written)
+    return written;
   if (Result<> written = write_contour_json(patient, contours); !written) return written;
 
   Description description = describe(patient);

@@ -5,7 +5,9 @@
 #include "stylet/dose/evaluate.hpp"
 #include "stylet/implant/compensation.hpp"
 #include "stylet/implant/displaced_tissue.hpp"
+#include "stylet/io/dose_io.hpp"
 #include "stylet/io/found_seeds_io.hpp"
+#include "stylet/io/patient_record_io.hpp"
 #include "stylet/patient/implant_plan.hpp"
 #include "stylet/patient/patient_mesh.hpp"
 
@@ -139,6 +141,17 @@ std::vector<std::string> probe_warnings(const Scenario& scenario, const ImplantP
   return {};
 }
 
+/// Whose implant it is, as the files of plan, patient and found seeds say.
+Result<FoundPatient> patient_of_implant(const Scenario& scenario, const ImplantPlan& of,
+                                        const ImplantSettings& settings) {
+  const std::string& source = scenario.patient.source;
+  PatientInputs inputs{.files = {scenario.plan.file, source == "phantom" ? "" : source, settings.found},
+                       .chosen = settings.patient_from,
+                       .frame_of_reference = of.plan.frame_of_reference};
+  if (inputs.frame_of_reference.empty()) inputs.frame_of_reference = of.structures.frame_of_reference;
+  return patient_of(inputs);
+}
+
 void append(std::vector<std::string>& all, const std::vector<std::string>& more) {
   all.insert(all.end(), more.begin(), more.end());
 }
@@ -160,6 +173,12 @@ Result<ImplantOutcome> implant(const Scenario& scenario, const std::string& wher
   }
   Result<std::optional<FoundSeeds>> found_seeds = found_seeds_of(settings, of.plan);
   if (!found_seeds) return found_seeds.error();
+  const Result<FoundPatient> whose = patient_of_implant(scenario, of, settings);
+  if (!whose) return whose.error();
+  const auto write_patient = [record = record_of_files(*whose, of.plan, of.source), &whose](DoseEvaluation& dose) {
+    dose.patient = record;
+    dose.assumptions.push_back(patient_sentence(*whose));
+  };
   ImplantOutcome outcome;
   outcome.scenario = scenario;
   outcome.seed_length_mm = of.source.outer_length_mm;
@@ -263,6 +282,10 @@ Result<ImplantOutcome> implant(const Scenario& scenario, const std::string& wher
     outcome.found = std::move(found);
   }
 
+  write_patient(outcome.planned);
+  write_patient(outcome.delivered);
+  if (outcome.found) write_patient(outcome.found->dose);
+  append(outcome.warnings, whose->notes);
   outcome.mesh = std::move(patient->mesh);
   append(outcome.warnings, of.plan.notes);
   append(outcome.warnings, of.structures.notes);

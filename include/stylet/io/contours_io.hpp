@@ -2,6 +2,7 @@
 #pragma once
 
 #include "stylet/core/result.hpp"
+#include "stylet/dose/patient_record.hpp"
 #include "stylet/geom/contours.hpp"
 
 #include <filesystem>
@@ -15,8 +16,10 @@ namespace stylet {
 /// @param skip names of structures that are not needed: a damaged one is ignored instead of being an error
 Result<ContourSet> read_rtstruct(const std::filesystem::path& path, std::span<const std::string> skip = {});
 
-/// Writes a DICOM RT Structure Set without patient-identifying data. On error no incomplete file is left.
-Result<> write_rtstruct(const ContourSet& contours, const std::filesystem::path& path);
+/// Writes a DICOM RT Structure Set. On error no incomplete file is left.
+/// @param patient whose structures they are; what it does not say is empty in the file
+Result<> write_rtstruct(const ContourSet& contours, const std::filesystem::path& path,
+                        const PatientRecord& patient = {});
 
 /// Reads a contour set in JSON (docs/formats.md).
 /// @param skip as for read_rtstruct()

@@ -5,6 +5,7 @@
 #include "stylet/dose/dose_grid.hpp"
 #include "stylet/dose/dose_plan.hpp"
 #include "stylet/dose/goals.hpp"
+#include "stylet/dose/patient_record.hpp"
 #include "stylet/dose/source_model.hpp"
 
 #include <filesystem>
@@ -23,9 +24,11 @@ DoseFileKind dose_file_kind(const std::filesystem::path& path);
 /// checked; notes say what the reader decided where real files disagree with the standard.
 Result<DosePlan> read_plan(const std::filesystem::path& path);
 
-/// Writes a DICOM RTPLAN without patient-identifying data. On error no incomplete file is left.
+/// Writes a DICOM RTPLAN. On error no incomplete file is left.
 /// @param source the source model that was used, for isotope, half-life and lengths
-Result<> write_rtplan(const DosePlan& plan, const SourceModel& source, const std::filesystem::path& path);
+/// @param patient whose plan it is; what it does not say is empty in the file
+Result<> write_rtplan(const DosePlan& plan, const SourceModel& source, const std::filesystem::path& path,
+                      const PatientRecord& patient = {});
 
 /// Writes plan JSON (docs/formats.md) with points and axes.
 Result<> write_plan_json(const DosePlan& plan, const std::filesystem::path& path);
@@ -33,18 +36,22 @@ Result<> write_plan_json(const DosePlan& plan, const std::filesystem::path& path
 /// Reads a DICOM RTDOSE. Doses in CGY are converted; relative doses are an error.
 Result<DoseGrid> read_rtdose(const std::filesystem::path& path);
 
-/// Writes a DICOM RTDOSE with 32 bits for each dose, without patient-identifying data.
+/// Writes a DICOM RTDOSE with 32 bits for each dose.
 /// @param plan_sop_instance UID of the plan to which the dose belongs; may be empty
-Result<> write_rtdose(const DoseGrid& grid, const std::string& plan_sop_instance, const std::filesystem::path& path);
+/// @param patient whose dose it is; what it does not say is empty in the file
+/// @param comment what the doses mean, such as "total dose until the sources have decayed"; may be empty
+Result<> write_rtdose(const DoseGrid& grid, const std::string& plan_sop_instance, const std::filesystem::path& path,
+                      const PatientRecord& patient = {}, const std::string& comment = {});
 
 /// Writes a dose grid as NRRD, space left-posterior-superior.
 Result<> write_dose_nrrd(const DoseGrid& grid, const std::filesystem::path& path);
 
-/// The SOP instance UID that write_rtplan() gives a plan: it follows from the plan's content.
-std::string rtplan_uid(const DosePlan& plan, const SourceModel& source);
+/// The record that the DICOM files of a plan have in common: where `patient` has no frame of reference it is the
+/// plan's, and a study or frame that nobody names is derived from the plan's content.
+PatientRecord record_of_files(PatientRecord patient, const DosePlan& plan, const SourceModel& source);
 
-/// The frame of reference that write_rtplan() gives a plan: its own, or one that follows from its content.
-std::string rtplan_frame(const DosePlan& plan, const SourceModel& source);
+/// The SOP instance UID that write_rtplan() gives a plan: it follows from the file's content.
+std::string rtplan_uid(const DosePlan& plan, const SourceModel& source, const PatientRecord& patient = {});
 
 /// Reads a source model from JSON (docs/formats.md). Errors: those of the format and of check_source().
 Result<SourceModel> read_source_model(const std::filesystem::path& path);

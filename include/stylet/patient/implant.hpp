@@ -13,7 +13,8 @@ struct ImplantSettings {
   int compensate =
       0;              ///< rounds in which the needles are aimed so that the seeds rest where they were planned; 0: none
   bool span = false;  ///< also with the tissue presets `firm` and `soft`, where the scenario has `typical`
-  std::filesystem::path found;  ///< file of the seeds that were found on images after the implant; empty: none
+  std::filesystem::path found;         ///< file of the seeds that were found on images after the implant; empty: none
+  std::filesystem::path patient_from;  ///< DICOM file that decides whose plan it is; empty: the inputs do
 };
 
 /// Carries out the plan of a scenario in its patient: meshes the patient, simulates all needles, and computes the dose

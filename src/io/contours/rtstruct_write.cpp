@@ -3,6 +3,7 @@
 // ContourData (VR DS) to 64 KiB, which a body outline exceeds.
 #include "detail/dicom_write.hpp"
 #include "detail/text.hpp"
+#include "stylet/core/version.hpp"
 #include "stylet/io/contours_io.hpp"
 
 #include <dcmtk/config/osconfig.h>
@@ -78,11 +79,25 @@ std::vector<int> roi_numbers(const ContourSet& set) {
   return numbers;
 }
 
-void fill_header(Filler& fill, DcmDataset& data, const ContourSet& set, const std::string& print) {
-  detail::fill_common(fill, data, UID_RTStructureSetStorage, "RTSTRUCT", print);
+/// A text as VR CS holds it: at most 16 capitals, digits, blanks and underscores; empty if it has anything else.
+std::string code_string(std::string text) {
+  for (char& c : text) {
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  }
+  const bool allowed = text.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 _") == std::string::npos;
+  return allowed && text.size() <= 16 ? text : "";
+}
+
+void fill_header(Filler& fill, DcmDataset& data, const ContourSet& set, const std::string& print,
+                 const std::string& frame, const PatientRecord& patient) {
+  detail::fill_common(fill, data, UID_RTStructureSetStorage, "RTSTRUCT", print, patient);
+  fill.text(data, DCM_InstanceNumber, "1");
+  fill.text(data, DCM_FrameOfReferenceUID, frame);
+  fill.text(data, DCM_PositionReferenceIndicator, patient.position_reference);
+  fill.text(data, DCM_ApprovalStatus, "UNAPPROVED");
   for (const DcmTagKey& empty : {DCM_StructureSetDate, DCM_StructureSetTime}) fill.text(data, empty, "");
   // SH holds 16 characters.
-  fill.text(data, DCM_StructureSetLabel, set.label.empty() ? "Stylet" : set.label.substr(0, 16));
+  fill.text(data, DCM_StructureSetLabel, set.label.empty() ? "Stylet" : detail::short_text(set.label, 16));
 }
 
 void fill_structures(Filler& fill, DcmDataset& data, const ContourSet& set, const std::string& frame) {
@@ -111,21 +126,23 @@ void fill_structures(Filler& fill, DcmDataset& data, const ContourSet& set, cons
     DcmItem& observation = fill.new_item(data, DCM_RTROIObservationsSequence);
     fill.text(observation, DCM_ObservationNumber, std::to_string(i + 1));
     fill.text(observation, DCM_ReferencedROINumber, number);
-    fill.text(observation, DCM_RTROIInterpretedType, roi.type.substr(0, 16));
+    fill.text(observation, DCM_RTROIInterpretedType, code_string(roi.type));
     fill.text(observation, DCM_ROIInterpreter, "");
   }
 }
 
 }  // namespace
 
-Result<> write_rtstruct(const ContourSet& contours, const fs::path& path) {
+Result<> write_rtstruct(const ContourSet& contours, const fs::path& path, const PatientRecord& patient) {
   if (Result<> sound = check(contours, path.string()); !sound) return sound;
-  const std::string print = fingerprint(contours);
+  const std::string print = fingerprint(contours) + detail::print_of(patient) + version();
+  std::string frame = patient.frame_of_reference;
+  if (frame.empty()) frame = contours.frame_of_reference;
+  if (frame.empty()) frame = derived_uid(print, "frame");
   DcmFileFormat file;
   Filler fill;
-  fill_header(fill, *file.getDataset(), contours, print);
-  fill_structures(fill, *file.getDataset(), contours,
-                  contours.frame_of_reference.empty() ? derived_uid(print, "frame") : contours.frame_of_reference);
+  fill_header(fill, *file.getDataset(), contours, print, frame, patient);
+  fill_structures(fill, *file.getDataset(), contours, frame);
   return detail::save_dicom(file, fill, path, EXS_LittleEndianImplicit, "RT Structure Set");
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "detail/dicom_write.hpp"
 
+#include "detail/patient_attributes.hpp"
 #include "detail/whole_file.hpp"
+#include "stylet/core/version.hpp"
 
 #include <fmt/format.h>
 
@@ -33,21 +35,41 @@ std::string derived_uid(const std::string& content, std::string_view role) {
   return "2.25." + number.str();
 }
 
-void fill_common(Filler& fill, DcmDataset& data, const char* sop_class, const char* modality,
-                 const std::string& print) {
+std::string short_text(const std::string& text, std::size_t most) {
+  std::string out;
+  std::size_t characters = 0;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if ((byte & 0xc0U) != 0x80U && ++characters > most) break;  // a byte of the form 10… goes on with a character
+    out += c == '\\' || byte < 0x20 || byte == 0x7f ? '_' : c;
+  }
+  return out;
+}
+
+std::string print_of(const PatientRecord& patient) {
+  std::string text = fmt::format("{}\n{}\n{}\n{}\n", patient.study_uid, patient.frame_of_reference,
+                                 patient.position_reference, patient.structure_set);
+  for (const PatientAttribute& attribute : kPatientAttributes) text += patient.*attribute.text + '\n';
+  return text;
+}
+
+void fill_common(Filler& fill, DcmDataset& data, const char* sop_class, const char* modality, const std::string& print,
+                 const PatientRecord& patient) {
   fill.text(data, DCM_SpecificCharacterSet, "ISO_IR 192");
   fill.text(data, DCM_SOPClassUID, sop_class);
   fill.text(data, DCM_SOPInstanceUID, derived_uid(print, "instance"));
-  fill.text(data, DCM_StudyInstanceUID, derived_uid(print, "study"));
+  fill.text(data, DCM_StudyInstanceUID, patient.study_uid.empty() ? derived_uid(print, "study") : patient.study_uid);
   fill.text(data, DCM_SeriesInstanceUID, derived_uid(print, "series"));
+  fill.text(data, DCM_SeriesNumber, "");
+  fill.text(data, DCM_SeriesDescription, "Computed by Stylet; research only");
   fill.text(data, DCM_Modality, modality);
   fill.text(data, DCM_Manufacturer, "Stylet");
-  fill.text(data, DCM_PatientName, "STYLET^PHANTOM");
-  fill.text(data, DCM_PatientID, "STYLET");
-  for (const DcmTagKey& empty :
-       {DCM_PatientBirthDate, DCM_PatientSex, DCM_StudyDate, DCM_StudyTime, DCM_AccessionNumber,
-        DCM_ReferringPhysicianName, DCM_StudyID, DCM_SeriesNumber, DCM_OperatorsName}) {
-    fill.text(data, empty, "");
+  fill.text(data, DCM_ManufacturerModelName, "Stylet");
+  fill.text(data, DCM_SoftwareVersions, version());
+  fill.text(data, DCM_OperatorsName, "");
+  for (const PatientAttribute& attribute : kPatientAttributes) {
+    const std::string& text = patient.*attribute.text;
+    if (attribute.is_always_there || !text.empty()) fill.text(data, attribute.tag, text);
   }
 }
 

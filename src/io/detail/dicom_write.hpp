@@ -5,6 +5,7 @@
 #include <dcmtk/dcmdata/dctk.h>
 
 #include "stylet/core/result.hpp"
+#include "stylet/dose/patient_record.hpp"
 
 #include <filesystem>
 #include <string>
@@ -19,6 +20,9 @@ std::string decimal_string(double value);
 
 /// A number as text of VR DS with as many digits as its 16 characters hold.
 std::string precise_decimal_string(double value);
+
+/// A text as an attribute of one value holds it: at most so many characters, none of them a backslash or control.
+std::string short_text(const std::string& text, std::size_t most);
 
 /// A unique identifier derived from the content (UUID version 5 under DICOM's root 2.25, PS3.5 B.2). The same content
 /// gives the same identifier, which contains nothing about this computer.
@@ -53,10 +57,15 @@ class Filler {
   DcmItem spare_;
 };
 
-/// Writes the attributes that every file has: character set, SOP class and instance, study, series, modality, and a
-/// patient without identity.
-/// @param print text with all data of the file, from which its identifiers are derived
-void fill_common(Filler& fill, DcmDataset& data, const char* sop_class, const char* modality, const std::string& print);
+/// Text with all that a patient record says, for the identifiers of files that contain it.
+std::string print_of(const PatientRecord& patient);
+
+/// Writes the attributes that every file has: character set, SOP class and instance, patient, study, series, modality
+/// and equipment. Attributes of which the record says nothing are empty.
+/// @param print text with all data of the file, from which its identifiers are derived; the study's too, where the
+///   record has none
+void fill_common(Filler& fill, DcmDataset& data, const char* sop_class, const char* modality, const std::string& print,
+                 const PatientRecord& patient);
 
 /// Saves a file that was filled; it appears whole or not at all.
 /// @param name of the kind of file in messages, such as "RT Plan"

@@ -8,6 +8,7 @@
 #include "stylet/geom/label_image.hpp"
 #include "stylet/geom/surface.hpp"
 #include "stylet/geom/tet_mesh.hpp"
+#include "stylet/io/patient_record_io.hpp"
 
 #include <cstring>
 #include <map>
@@ -51,6 +52,11 @@ void fields(auto& wire, DosePlan& p) {
 void fields(auto& wire, DoseGrid& g) {
   wire(g.file, g.frame_of_reference, g.size, g.origin_mm, g.spacing_mm, g.direction, g.dose_Gy, g.quantum_Gy,
        g.largest_Gy, g.notes);
+}
+void fields(auto& wire, FoundPatient& p) {
+  wire(p.file, p.name, p.id, p.id_issuer, p.birth_date, p.sex, p.study_uid, p.study_date, p.study_time, p.study_id,
+       p.study_description, p.accession_number, p.referring_physician, p.frame_of_reference, p.position_reference,
+       p.structure_set, p.notes);
 }
 void fields(auto& wire, Surface& s) { wire(s.name, s.points, s.triangles); }
 void fields(auto& wire, SurfacesWithNotes& s) { wire(s.surfaces, s.notes); }

@@ -2,6 +2,7 @@
 // Writers of dose grids: DICOM RTDOSE (DICOM PS3.3 A.18.3) and NRRD.
 #include "detail/dicom_write.hpp"
 #include "detail/whole_file.hpp"
+#include "stylet/core/version.hpp"
 #include "stylet/io/dose_io.hpp"
 
 #include <fmt/format.h>
@@ -28,22 +29,25 @@ Result<> check_grid(const DoseGrid& grid, const std::string& where) {
 }
 
 /// Text from which the identifiers of the file are derived.
-std::string print_of_grid(const DoseGrid& grid, const std::string& plan) {
-  std::string text = fmt::format("{}\n{} {} {}\n{} {} {}\n", plan, grid.size[0], grid.size[1], grid.size[2],
-                                 grid.origin_mm.x(), grid.origin_mm.y(), grid.origin_mm.z());
+std::string print_of_grid(const DoseGrid& grid, const std::string& plan, const PatientRecord& patient) {
+  std::string text = fmt::format("{}\n{}\n{}{} {} {}\n", plan, version(), detail::print_of(patient), grid.size[0],
+                                 grid.size[1], grid.size[2]);
+  for (const Vec3& x : {grid.origin_mm, grid.spacing_mm, Vec3(grid.direction.col(0)), Vec3(grid.direction.col(1))})
+    text += fmt::format("{} {} {}\n", x.x(), x.y(), x.z());
   double sum = 0.0;
   for (std::size_t p = 0; p < grid.dose_Gy.size(); ++p)
     sum += static_cast<double>(grid.dose_Gy[p]) * static_cast<double>(p + 1);
   return text + fmt::format("{}", sum);
 }
 
-void fill_dose(Filler& fill, DcmDataset& data, const DoseGrid& grid, const std::string& plan, double scaling) {
-  const std::string print = print_of_grid(grid, plan);
-  detail::fill_common(fill, data, UID_RTDoseStorage, "RTDOSE", print);
+void fill_dose(Filler& fill, DcmDataset& data, const DoseGrid& grid, const std::string& plan,
+               const PatientRecord& patient, const std::string& comment, double scaling) {
+  const std::string print = print_of_grid(grid, plan, patient);
+  detail::fill_common(fill, data, UID_RTDoseStorage, "RTDOSE", print, patient);
   fill.text(data, DCM_InstanceNumber, "1");
-  fill.text(data, DCM_FrameOfReferenceUID,
-            grid.frame_of_reference.empty() ? detail::derived_uid(print, "frame") : grid.frame_of_reference);
-  fill.text(data, DCM_PositionReferenceIndicator, "");
+  const std::string& frame = patient.frame_of_reference.empty() ? grid.frame_of_reference : patient.frame_of_reference;
+  fill.text(data, DCM_FrameOfReferenceUID, frame.empty() ? detail::derived_uid(print, "frame") : frame);
+  fill.text(data, DCM_PositionReferenceIndicator, patient.position_reference);
   const auto vector = [](const Vec3& x) {
     return precise_decimal_string(x.x()) + "\\" + precise_decimal_string(x.y()) + "\\" + precise_decimal_string(x.z());
   };
@@ -64,7 +68,9 @@ void fill_dose(Filler& fill, DcmDataset& data, const DoseGrid& grid, const std::
   fill.tag(data, DCM_FrameIncrementPointer, DCM_GridFrameOffsetVector);
   fill.text(data, DCM_DoseUnits, "GY");
   fill.text(data, DCM_DoseType, "PHYSICAL");
+  if (!comment.empty()) fill.text(data, DCM_DoseComment, detail::short_text(comment, 64));
   fill.text(data, DCM_DoseSummationType, "PLAN");
+  fill.text(data, DCM_TissueHeterogeneityCorrection, "WATER");
   fill.text(data, DCM_DoseGridScaling, precise_decimal_string(scaling));
   std::string offsets;
   for (Index k = 0; k < grid.size[2]; ++k)
@@ -87,7 +93,8 @@ void fill_dose(Filler& fill, DcmDataset& data, const DoseGrid& grid, const std::
 
 }  // namespace
 
-Result<> write_rtdose(const DoseGrid& grid, const std::string& plan_sop_instance, const fs::path& path) {
+Result<> write_rtdose(const DoseGrid& grid, const std::string& plan_sop_instance, const fs::path& path,
+                      const PatientRecord& patient, const std::string& comment) {
   if (Result<> good = check_grid(grid, path.string()); !good) return good;
   if (grid.size[0] > 65535 || grid.size[1] > 65535)
     return failure(path.string(), "a DICOM grid has at most 65535 rows and columns", "Use a coarser grid");
@@ -97,7 +104,7 @@ Result<> write_rtdose(const DoseGrid& grid, const std::string& plan_sop_instance
   const double scaling = std::stod(precise_decimal_string(std::max(highest, 1e-6) / most));
   DcmFileFormat file;
   Filler fill;
-  fill_dose(fill, *file.getDataset(), grid, plan_sop_instance, scaling);
+  fill_dose(fill, *file.getDataset(), grid, plan_sop_instance, patient, comment, scaling);
   return detail::save_dicom(file, fill, path, EXS_LittleEndianExplicit, "RT Dose");
 }
 

@@ -37,13 +37,16 @@ Result<std::string> bytes_of(const std::string& name, const fs::path& beside,
   return bytes;
 }
 
-/// plan.dcm, dose.dcm and dose.nrrd. Both DICOM files have one frame of reference.
+/// plan.dcm, dose.dcm and dose.nrrd. Both DICOM files have one patient, study and frame of reference.
 Result<std::vector<results::File>> files_of_grid_and_plan(const DoseEvaluation& e, const fs::path& beside) {
-  DoseGrid grid = e.grid;
-  grid.frame_of_reference = rtplan_frame(e.plan, e.source);
+  const DoseGrid& grid = e.grid;
+  DosePlan plan = e.plan;
+  plan.prescription_Gy = e.prescription_Gy;
+  const PatientRecord patient = record_of_files(e.patient, plan, e.source);
+  const std::string uid = rtplan_uid(plan, e.source, patient);
   const std::vector<std::pair<std::string, std::function<Result<>(const fs::path&)>>> writers{
-      {"plan.dcm", [&](const fs::path& path) { return write_rtplan(e.plan, e.source, path); }},
-      {"dose.dcm", [&](const fs::path& path) { return write_rtdose(grid, rtplan_uid(e.plan, e.source), path); }},
+      {"plan.dcm", [&](const fs::path& path) { return write_rtplan(plan, e.source, path, patient); }},
+      {"dose.dcm", [&](const fs::path& path) { return write_rtdose(grid, uid, path, patient, e.quantity); }},
       {"dose.nrrd", [&](const fs::path& path) { return write_dose_nrrd(grid, path); }}};
   std::vector<results::File> files;
   for (const auto& [name, write] : writers) {

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Reads patient, study and frame of reference of a DICOM file.
+#include "detail/dicom.hpp"
+#include "detail/file_kind.hpp"
+#include "detail/guard.hpp"
+#include "detail/parsers.hpp"
+#include "detail/patient_attributes.hpp"
+#include "detail/text.hpp"
+#include "stylet/dose/strength_age.hpp"
+#include "stylet/io/patient_record_io.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace stylet {
+
+namespace {
+
+namespace fs = std::filesystem;
+using detail::RecordText;
+
+/// Number of bytes of the UTF-8 character that begins at a place of a text; 0 if none does.
+std::size_t utf8_length(const std::string& text, std::size_t at) {
+  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
+  const unsigned char first = byte(at);
+  const std::size_t length = first < 0x80   ? 1
+                             : first < 0xc2 ? 0
+                             : first < 0xe0 ? 2
+                             : first < 0xf0 ? 3
+                             : first < 0xf5 ? 4
+                                            : 0;
+  if (at + length > text.size()) return 0;
+  for (std::size_t k = at + 1; k < at + length; ++k) {
+    if ((byte(k) & 0xc0U) != 0x80U) return 0;
+  }
+  return length;
+}
+
+bool is_utf8(const std::string& text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = utf8_length(text, at);
+    if (length == 0) return false;
+    at += length;
+  }
+  return true;
+}
+
+std::string from_latin1(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80) {
+      out += c;
+    } else {
+      out += static_cast<char>(0xc0U | (byte >> 6U));
+      out += static_cast<char>(0x80U | (byte & 0x3fU));
+    }
+  }
+  return out;
+}
+
+/// A time in the notation of DICOM, from "10:15:30" too; empty if the text is none.
+std::string time_of(std::string text) {
+  text.erase(std::remove(text.begin(), text.end(), ':'), text.end());
+  return parse_date_time("20000101 " + text) ? text : "";
+}
+
+/// A text as DICOM allows it; empty if it cannot be.
+std::string allowed(const std::string& text, RecordText kind) {
+  switch (kind) {
+    case RecordText::any:
+      return text;
+    case RecordText::date: {
+      const auto date = parse_date_time(text);
+      return date && date->seconds < 0 ? date->dicom_date() : "";
+    }
+    case RecordText::time:
+      return time_of(text);
+    case RecordText::sex:
+      return text == "M" || text == "F" || text == "O" ? text : "";
+  }
+  return "";
+}
+
+Result<FoundPatient> parse_patient_record(const fs::path& path) {
+  DcmFileFormat format;
+  const auto any_kind = [](DcmDataset&) -> Result<> { return Ok{}; };
+  if (Result<> loaded = detail::load_dicom(format, path, any_kind, "Name a DICOM file of the patient"); !loaded)
+    return loaded.error();
+  DcmDataset& data = *format.getDataset();
+  FoundPatient record;
+  record.file = path.string();
+  for (const detail::PatientAttribute& attribute : detail::kPatientAttributes) {
+    std::string text = detail::text_of(data, attribute.tag);
+    if (!is_utf8(text)) {
+      text = from_latin1(text);
+      record.notes.push_back(
+          fmt::format("{}: the {} is not in the file's character set ('{}'); it is read as Latin-1, '{}'. Check it.",
+                      record.file, attribute.name, detail::text_of(data, DCM_SpecificCharacterSet), text));
+    }
+    record.*attribute.text = allowed(text, attribute.kind);
+    if (!text.empty() && (record.*attribute.text).empty())
+      record.notes.push_back(fmt::format("{}: the {} is '{}', which DICOM does not allow; it is left out.", record.file,
+                                         attribute.name, text));
+  }
+  record.study_uid = detail::text_of(data, DCM_StudyInstanceUID);
+  record.frame_of_reference = detail::text_of(data, DCM_FrameOfReferenceUID);
+  if (record.frame_of_reference.empty()) {
+    const auto frames = detail::items_of(data, DCM_ReferencedFrameOfReferenceSequence);
+    if (frames.size() == 1) record.frame_of_reference = detail::text_of(*frames.front(), DCM_FrameOfReferenceUID);
+  }
+  record.position_reference = detail::text_of(data, DCM_PositionReferenceIndicator);
+  if (detail::text_of(data, DCM_SOPClassUID) == UID_RTStructureSetStorage) {
+    record.structure_set = detail::text_of(data, DCM_SOPInstanceUID);
+  } else {
+    const auto sets = detail::items_of(data, DCM_ReferencedStructureSetSequence);
+    if (!sets.empty()) record.structure_set = detail::text_of(*sets.front(), DCM_ReferencedSOPInstanceUID);
+  }
+  return record;
+}
+
+}  // namespace
+
+Result<FoundPatient> read_patient_record(const fs::path& path) {
+  std::error_code code;
+  if (fs::is_directory(path, code)) {
+    const Result<std::string> found = detail::guarded<std::string>(path, [&] { return detail::only_patient_in(path); });
+    return found ? read_patient_record(*found) : Result<FoundPatient>(found.error());
+  }
+  const Result<detail::FileKind> kind = detail::identify(path);
+  if (!kind) return kind.error();
+  if (*kind != detail::FileKind::dicom) return FoundPatient{};
+  return detail::guarded<FoundPatient>(path, [&] { return parse_patient_record(path); });
+}
+
+}  // namespace stylet
