@@ -11,6 +11,7 @@
 #include "stylet/io/dose_results.hpp"
 #include "stylet/io/patient_record_io.hpp"
 #include "stylet/patient/dose_structures.hpp"
+#include "stylet/patient/fit.hpp"
 #include "stylet/patient/source_choice.hpp"
 
 #include <fmt/format.h>
@@ -75,7 +76,10 @@ Result<SourceModel> source_of(const DoseArguments& arguments, const DosePlan& pl
   return source;
 }
 
-Result<DoseStructures> structures_of(const DoseArguments& arguments, const DosePlan& plan, Console& console) {
+/// @param own_goals whether the program's own goals are judged, which are those of prostate implants: only then does it
+///   matter whether the target is a prostate
+Result<DoseStructures> structures_of(const DoseArguments& arguments, const DosePlan& plan, bool own_goals,
+                                     Console& console) {
   if (arguments.structures.empty()) return DoseStructures{};
   const Result<PatientInput> input = read_input(arguments.structures, {}, {}, arguments.skip);
   if (!input) return input.error();
@@ -91,6 +95,12 @@ Result<DoseStructures> structures_of(const DoseArguments& arguments, const DoseP
   }
   Result<DoseStructures> structures = dose_structures(*input, options, console.progress());
   if (!structures) return structures;
+  if (own_goals) {
+    FitOptions fit;
+    fit.names.regions = options.regions;
+    fit.names.skip = options.skip;
+    for (const FitFinding& finding : judge_fit(*input, fit)) structures->notes.push_back(finding.message());
+  }
   if (!arguments.ignore_frame && !structures->frame_of_reference.empty() && !plan.frame_of_reference.empty() &&
       structures->frame_of_reference != plan.frame_of_reference) {
     return input_error(arguments.structures,
@@ -164,7 +174,8 @@ Result<> run_dose(const DoseArguments& arguments, Console& console) {
   if (!source) return source.error();
   const Result<DoseOptions> options = options_of(arguments, *plan);
   if (!options) return options.error();
-  const Result<DoseStructures> structures = structures_of(arguments, *plan, console);
+  const Result<DoseStructures> structures =
+      structures_of(arguments, *plan, arguments.goals.empty() && plan->implant == Implant::permanent, console);
   if (!structures) return structures.error();
   const std::string& frame =
       plan->frame_of_reference.empty() ? structures->frame_of_reference : plan->frame_of_reference;

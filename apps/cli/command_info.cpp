@@ -8,6 +8,7 @@
 #include "stylet/dose/known_sources.hpp"
 #include "stylet/io/dose_io.hpp"
 #include "stylet/io/input.hpp"
+#include "stylet/patient/fit.hpp"
 
 #include <fmt/format.h>
 
@@ -29,6 +30,22 @@ template <class T>
 Result<Description> described(const Result<T>& read) {
   if (!read) return read.error();
   return describe(*read);
+}
+
+/// Adds what judge_fit() says about a patient.
+void add_fit(const PatientInput& input, const InfoArguments& arguments, Description& out) {
+  FitOptions options{.scale = arguments.scale};
+  options.names.skip = arguments.skip;
+  for (const FitFinding& finding : judge_fit(input, options)) {
+    if (finding.verdict == FitVerdict::note) {
+      out.json["notes"].push_back(finding.message());
+      out.text += "\n  note: " + finding.message();
+      continue;
+    }
+    out.warnings.push_back((finding.verdict == FitVerdict::refuse ? "A simulation refuses this patient. " : "") +
+                           finding.message());
+  }
+  if (!out.warnings.empty()) out.json["warnings"] = out.warnings;
 }
 
 Result<Description> description_of(const InfoArguments& arguments) {
@@ -58,7 +75,9 @@ Result<Description> description_of(const InfoArguments& arguments) {
   const Result<PatientInput> input =
       read_input(arguments.file, {.scale = arguments.scale}, {.volume = arguments.volume}, arguments.skip);
   if (!input) return input.error();
-  return std::visit([](const auto& content) { return describe(content); }, *input);
+  Description out = std::visit([](const auto& content) { return describe(content); }, *input);
+  add_fit(*input, arguments, out);
+  return out;
 }
 
 /// Writes a drafted scenario.

@@ -133,7 +133,7 @@ Result<> run_mesh(const MeshArguments& arguments, Console& console) {
   if (Result<> made = make_folder(output.has_parent_path() ? output.parent_path() : "."); !made) return made;
   if (Result<> written = write_vtu(model->mesh, output); !written) return written;
 
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = input->warnings;
   if (const std::string flat = nearly_flat_warning(model->mesh); !flat.empty()) warnings.push_back(flat);
   for (const std::string& warning : warnings) console.warn(arguments.output + ": " + warning);
   console.say(fmt::format("{} → {}", arguments.input, arguments.output));

@@ -4,6 +4,7 @@
 #include "contour_measures.hpp"
 
 #include "stylet/core/version.hpp"
+#include "stylet/patient/fit.hpp"
 #include "stylet/patient/judged_contours.hpp"
 #include "stylet/sim/scenario.hpp"
 
@@ -252,6 +253,25 @@ Result<Contents> contents_of(const std::vector<Surface>& surfaces, const std::ve
   return out;
 }
 
+/// Adds what judge_fit() says. The gland of a patient that is refused is commented out, because a region that the
+/// scenario assigns insists on it.
+void tell_fit(const PatientInput& patient, const DraftSource& source, Contents& out) {
+  FitOptions options{.scale = source.scale};
+  options.names.skip = source.skip;
+  const auto findings = judge_fit(patient, options);
+  for (const FitFinding& finding : findings) {
+    std::string text = finding.message();
+    text.pop_back();  // the draft ends the sentence
+    (finding.verdict == FitVerdict::note ? out.remarks : out.warnings).push_back(text);
+  }
+  if (!refusal(findings, source.file)) return;
+  for (RegionLine& line : out.regions) {
+    if (!is_target_region(line.region)) continue;
+    line.region.clear();
+    line.remark += "; remove the # to insist on it";
+  }
+}
+
 /// A hole half way between the target's centre and its left side, so that the needle passes beside the urethra.
 struct Hole {
   std::string name;
@@ -337,9 +357,10 @@ std::string source_for(const fs::path& file, const fs::path& output) {
 }
 
 Result<ScenarioDraft> draft_scenario(const PatientInput& patient, const DraftSource& source) {
-  const Result<Contents> contents =
+  Result<Contents> contents =
       std::visit([&](const auto& content) { return contents_of(content, source.skip); }, patient);
   if (!contents) return contents.error();
+  tell_fit(patient, source, *contents);
   ScenarioDraft draft;
   draft.warnings = contents->warnings;
   std::string name = fs::path(source.file).lexically_normal().stem().string();

@@ -3,6 +3,7 @@
 
 #include "stylet/core/nearest_name.hpp"
 #include "stylet/geom/structure_names.hpp"
+#include "stylet/patient/fit.hpp"
 #include "stylet/patient/judged_contours.hpp"
 
 #include <fmt/format.h>
@@ -54,6 +55,10 @@ Result<PatientFile> read_patient(const std::filesystem::path& path, const MeshRe
   if (auto* surfaces = std::get_if<std::vector<Surface>>(&file.content)) {
     if (Result<> done = drop_skipped(*surfaces, mesh_options.skip, path.string()); !done) return done.error();
   }
+  const auto findings = judge_fit(file.content, {.names = mesh_options, .scale = read_options.scale});
+  if (const auto refused = refusal(findings, path.string())) return *refused;
+  for (const FitFinding& finding : findings)
+    (finding.verdict == FitVerdict::note ? file.notes : file.warnings).push_back(finding.message());
   return file;
 }
 

@@ -115,7 +115,11 @@ Result<MeshedAnatomy> mesh_patient(const Scenario& scenario, const Progress& pro
   if (!file) return file.error();
   auto patient =
       std::visit([&](const auto& content) { return model_of(content, options, scenario, progress); }, file->content);
-  if (patient) patient->report.notes.insert(patient->report.notes.begin(), file->notes.begin(), file->notes.end());
+  if (patient) {
+    std::vector<std::string>& notes = patient->report.notes;
+    notes.insert(notes.begin(), file->notes.begin(), file->notes.end());
+    notes.insert(notes.begin(), file->warnings.begin(), file->warnings.end());
+  }
   return patient;
 }
 
