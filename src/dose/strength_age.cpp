@@ -108,7 +108,7 @@ std::string strength_sentence(const StrengthAge& age) {
         age.strength_date, used);
   }
   const std::string dates =
-      fmt::format("The strengths are those of {}, the plan is of {}, {:.4g} days {}", age.strength_date, age.plan_date,
+      fmt::format("The strengths are those of {}, the plan is of {}, {:g} days {}", age.strength_date, age.plan_date,
                   std::abs(*age.days), *age.days < 0.0 ? "earlier" : "later");
   if (!age.factor_between)
     return fmt::format("{}: these dates cannot both be right, so no decay between them is given; {}.", dates, used);
