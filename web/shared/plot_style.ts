@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import type uPlot from 'uplot';
+import { numberText } from './numbers';
 
 // Colours by Okabe & Ito, distinguishable with every kind of colour vision.
 export const INK = '#23262b';
@@ -34,6 +35,7 @@ export function axis(label: string, size: number): uPlot.Axis {
     font: font(),
     labelSize: fontSize() * 1.7,
     size,
+    values: (_u, marks) => marks.map((mark) => (mark === null ? '' : numberText(mark))),
     stroke: INK,
     grid: { stroke: GRID, width: 1 },
     ticks: { stroke: GRID, width: 1, size: 5 },
@@ -51,5 +53,5 @@ export function followWidth(box: HTMLElement, plot: uPlot): void {
 
 /** A number with its unit and a readable number of digits. */
 export function newtons(value: number): string {
-  return `${value.toFixed(Math.abs(value) < 0.1 ? 3 : 2)} N`;
+  return `${numberText(value, Math.abs(value) < 0.1 ? 3 : 2)} N`;
 }

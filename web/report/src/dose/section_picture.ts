@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One section: isodose lines, outlines of structures and sources near the plane, as an SVG picture in millimetres.
 import { element } from '../../../shared/dom';
+import { numberText } from '../../../shared/numbers';
 import type { DoseData, Level } from './data';
 import { isolines, linePath, shapePath, slice, type Line } from './isolines';
 import { dashOf } from './level_look';
@@ -40,11 +41,11 @@ function drawScale(svg: SVGElement, plane: Plane, frame: Frame): void {
   const every = size > 130 ? 20 : 10;
   for (let v = Math.ceil(left / every) * every; v <= left + size; v += every) {
     add(g, 'path', { d: `M${v} ${top + size}v1.2` });
-    if (v > left + 3 && v < left + size - 3) add(g, 'text', { x: v, y: top + size + 4.6, 'text-anchor': 'middle' }, label(v));
+    if (v > left + 3 && v < left + size - 3) add(g, 'text', { x: v, y: top + size + 4.6, 'text-anchor': 'middle' }, numberText(v));
   }
   for (let v = Math.ceil(top / every) * every; v <= top + size; v += every) {
     add(g, 'path', { d: `M${left} ${v}h-1.2` });
-    add(g, 'text', { x: left - 2, y: v + 1, 'text-anchor': 'end' }, label(plane.up ? -v : v));
+    add(g, 'text', { x: left - 2, y: v + 1, 'text-anchor': 'end' }, numberText(plane.up ? -v : v));
   }
   const { ends } = plane;
   const middle = [left + size / 2, top + size / 2];
@@ -53,10 +54,6 @@ function drawScale(svg: SVGElement, plane: Plane, frame: Frame): void {
   add(letters, 'text', { x: left + size - 2.6, y: middle[1] + 1.4 }, ends.right);
   add(letters, 'text', { x: middle[0], y: top + 4.4 }, ends.top);
   add(letters, 'text', { x: middle[0], y: top + size - 2 }, ends.bottom);
-}
-
-function label(value: number): string {
-  return value === 0 ? '0' : String(value).replace('-', '−');
 }
 
 /** The point of lines that lies farthest in a direction, well within the frame. */
@@ -159,7 +156,7 @@ export function buildSection(data: DoseData, plane: Plane, more: MoreMarks = () 
     if (names) inside.append(names);
     drawScale(svg, plane, frame);
     const kind = data.sources.temporary ? 'dwell position' : 'seed';
-    const where = `${plane.moves} = ${label(Math.round(10 * height) / 10)} mm`;
+    const where = `${plane.moves} = ${numberText(Math.round(10 * height) / 10)} mm`;
     caption.replaceChildren(element('b', '', plane.name), element('span', '', `${where} · ${shown} ${kind}${shown === 1 ? '' : 's'} near`));
     svg.setAttribute('aria-label', `${plane.name} section at ${where}`);
   };

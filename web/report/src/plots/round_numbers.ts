@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Ticks of logarithmic axes.
 import type uPlot from 'uplot';
+import { numberText } from '../../../shared/numbers';
 
 /** The numbers between low and high that are a power of ten times one of `leading`. */
 export function roundNumbers(low: number, high: number, leading: number[]): number[] {
@@ -15,7 +16,7 @@ export function roundNumbers(low: number, high: number, leading: number[]): numb
 }
 
 /** An axis with ticks at exactly these numbers. By itself, uPlot leaves out some of them on a logarithmic axis. */
-export function marksAt(numbers: number[], text: (value: number) => string = (v) => v.toLocaleString('en')): Partial<uPlot.Axis> {
+export function marksAt(numbers: number[], text: (value: number) => string = (v) => numberText(v)): Partial<uPlot.Axis> {
   return {
     splits: () => numbers,
     filter: (_u: uPlot, splits: number[]) => splits,

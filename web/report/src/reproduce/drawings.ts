@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Figure 2 as SVG: contours slice by slice, the organ's surface, and needle segments. The solids can be turned.
+import { numberText } from '../../../shared/numbers';
 import { BLUE, VERMILION } from './colors';
 import type { Figure2, Point, Segment } from './data';
 
@@ -28,7 +29,7 @@ export function drawContours(box: HTMLElement, figure: Figure2): void {
     const panel = document.createElement('div');
     const view = svg('svg', {
       viewBox: `${left - margin} ${top - margin} ${right - left + 2 * margin} ${bottom - top + 2 * margin}`,
-      role: 'img', 'aria-label': `Contour at z = ${points[0][2].toFixed(0)} mm`,
+      role: 'img', 'aria-label': `Contour at z = ${numberText(points[0][2], 0)} mm`,
     });
     const closed = (chosen: Point[]) => chosen.map((p) => `${p[0].toFixed(2)},${p[1].toFixed(2)}`).join(' ');
     svg('polygon', { points: closed(points), fill: '#f4f5f7', stroke: 'none' }, view);
@@ -40,7 +41,7 @@ export function drawContours(box: HTMLElement, figure: Figure2): void {
       if (kept[i]) svg('circle', { cx: p[0], cy: p[1], r: 0.8, fill: BLUE }, view);
     });
     const caption = document.createElement('span');
-    caption.textContent = `z = ${points[0][2].toFixed(0).replace('-', '−')} mm: ${kept.filter((k) => k).length} of ${points.length}`;
+    caption.textContent = `z = ${numberText(points[0][2], 0)} mm: ${kept.filter((k) => k).length} of ${points.length}`;
     panel.append(view, caption);
     grid.append(panel);
   }

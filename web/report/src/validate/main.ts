@@ -5,6 +5,7 @@ import '../style.css';
 import '../verdict.css';
 import './style.css';
 import { buildLinePlot, type Line } from '../plots/line_plot';
+import { numberText } from '../../../shared/numbers';
 import { INK } from '../../../shared/plot_style';
 import { build } from '../page_part';
 
@@ -36,7 +37,7 @@ function text(value: number): string {
     const digits = Number((value / Math.pow(10, exponent)).toPrecision(2));
     return `${digits === 1 ? '' : `${digits}·`}10${String(exponent).replace(/./g, (c) => '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'['-0123456789'.indexOf(c)])}`;
   }
-  return String(Number(value.toPrecision(3))).replace('-', '−');
+  return numberText(Number(value.toPrecision(3)));
 }
 
 function linesOf(plot: Plot): Line[] {
