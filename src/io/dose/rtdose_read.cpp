@@ -112,19 +112,58 @@ Result<std::vector<std::size_t>> order_of(const std::vector<double>& offsets, co
   return order;
 }
 
-/// Copies one frame and converts it to Gy.
-template <class Number>
-void copy_frame(const Number* from, std::size_t count, double scaling, float* to) {
-  for (std::size_t p = 0; p < count; ++p) to[p] = static_cast<float>(scaling * static_cast<double>(from[p]));
+/// The words of the pixels, 16 bits each, as DCMTK returns them in the machine's byte order.
+struct Words {
+  const Uint16* first = nullptr;
+  bool high_first = false;  ///< of 32 bits, the upper half comes first
+};
+
+/// The number at position `p` of the grid as stored, without the scaling.
+double stored_number(const StoredNumbers& n, const Words& words, std::size_t p) {
+  if (n.bits_allocated == 16) {
+    const Uint16 bits = words.first[p];
+    return n.has_sign ? static_cast<double>(static_cast<Sint16>(bits)) : static_cast<double>(bits);
+  }
+  const std::size_t high = words.high_first ? 0 : 1;
+  const Uint32 bits =
+      static_cast<Uint32>(words.first[2 * p + high]) << 16U | static_cast<Uint32>(words.first[2 * p + 1 - high]);
+  return n.has_sign ? static_cast<double>(static_cast<Sint32>(bits)) : static_cast<double>(bits);
+}
+
+/// Sum of the steps between neighbours in a row, which is small for a dose and huge for one whose halves are exchanged.
+double roughness(const StoredNumbers& n, const Words& words, std::size_t count) {
+  double sum = 0.0;
+  for (std::size_t p = 1; p < count; ++p) {
+    if (p % static_cast<std::size_t>(n.columns) == 0) continue;
+    sum += std::abs(stored_number(n, words, p) - stored_number(n, words, p - 1));
+  }
+  return sum;
+}
+
+/// Sets which half of a number of 32 bits comes first. DCMTK swaps the bytes of each word of 16 bits, but never the
+/// words. In little endian the lower half comes first. In explicit big endian the whole number is turned round, so the
+/// upper half comes first; programs that convert files word by word leave the lower half first. Such a file is known by
+/// its doses: exchanged halves make neighbours differ by many times as much.
+void find_word_order(DcmDataset& data, const StoredNumbers& n, std::size_t count, Words& words, DoseGrid& grid) {
+  constexpr double kFarRougher = 10.0;
+  if (n.bits_allocated != 32 || DcmXfer(data.getOriginalXfer()).getByteOrder() != EBO_BigEndian) return;
+  const double low_first = roughness(n, words, count);
+  words.high_first = true;
+  if (roughness(n, words, count) <= kFarRougher * low_first) return;
+  words.high_first = false;
+  grid.notes.push_back(
+      fmt::format("{} is stored in big endian, but the halves of its 32-bit doses are in the order of little endian, "
+                  "as their smooth course shows; they are read so.",
+                  grid.file));
 }
 
 Result<> read_doses(DcmDataset& data, const StoredNumbers& n, const std::vector<std::size_t>& order, DoseGrid& grid) {
   const auto layer = static_cast<std::size_t>(n.rows) * static_cast<std::size_t>(n.columns);
   const std::size_t count = layer * static_cast<std::size_t>(n.frames);
   grid.dose_Gy.resize(count);
-  const Uint16* words = nullptr;
+  Words words;
   unsigned long length = 0;
-  if (data.findAndGetUint16Array(DCM_PixelData, words, &length).bad() || words == nullptr) {
+  if (data.findAndGetUint16Array(DCM_PixelData, words.first, &length).bad() || words.first == nullptr) {
     return input_error(grid.file, "the file has no doses that can be read (PixelData is missing or compressed)",
                        "Export the dose without compression");
   }
@@ -133,23 +172,10 @@ Result<> read_doses(DcmDataset& data, const StoredNumbers& n, const std::vector<
     return input_error(grid.file, fmt::format("the file announces {} doses and holds {}", count, length / words_each),
                        kExportDoseAgain);
   }
+  find_word_order(data, n, count, words, grid);
   for (std::size_t k = 0; k < order.size(); ++k) {
-    const Uint16* frame = words + order[k] * layer * words_each;
-    float* to = grid.dose_Gy.data() + k * layer;
-    if (n.bits_allocated == 32) {
-      std::vector<Uint32> numbers(layer);
-      for (std::size_t p = 0; p < layer; ++p)
-        numbers[p] = static_cast<Uint32>(frame[2 * p]) | static_cast<Uint32>(frame[2 * p + 1]) << 16U;
-      if (n.has_sign) {
-        copy_frame(reinterpret_cast<const Sint32*>(numbers.data()), layer, n.scaling_Gy, to);
-      } else {
-        copy_frame(numbers.data(), layer, n.scaling_Gy, to);
-      }
-    } else if (n.has_sign) {
-      copy_frame(reinterpret_cast<const Sint16*>(frame), layer, n.scaling_Gy, to);
-    } else {
-      copy_frame(frame, layer, n.scaling_Gy, to);
-    }
+    for (std::size_t p = 0; p < layer; ++p)
+      grid.dose_Gy[k * layer + p] = static_cast<float>(n.scaling_Gy * stored_number(n, words, order[k] * layer + p));
   }
   return Ok{};
 }

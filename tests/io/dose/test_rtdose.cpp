@@ -79,6 +79,33 @@ TEST_F(Rtdose, has_its_doses_at_the_places_that_the_header_says) {
   }
 }
 
+TEST_F(Rtdose, has_the_same_doses_in_big_endian_with_every_order_of_its_halves) {
+  for (const int bits : {16, 32}) {
+    for (const bool halves_turned : {true, false}) {
+      if (bits == 16 && halves_turned) continue;
+      RtdoseFile dose(bits);
+      DcmDataset& data = *dose.file.getDataset();
+      std::vector<Uint16> words;  // DCMTK turns the bytes of each word, so the test turns the words
+      for (int p = 0; p < 36; ++p) {
+        const int number = 1 + p % 4 + 10 * (p / 4 % 3) + 100 * (p / 12);
+        if (bits == 16) {
+          words.push_back(static_cast<Uint16>(number));
+          continue;
+        }
+        words.push_back(halves_turned ? Uint16{1} : static_cast<Uint16>(number));
+        words.push_back(halves_turned ? static_cast<Uint16>(number) : Uint16{1});
+      }
+      data.putAndInsertUint16Array(DCM_PixelData, words.data(), static_cast<unsigned long>(words.size()));
+      ASSERT_TRUE(dose.file.saveFile((folder / "big.dcm").c_str(), EXS_BigEndianExplicit).good());
+      const DoseGrid grid = read_rtdose(folder / "big.dcm").value();
+      const double more = bits == 32 ? 65536.0 : 0.0;
+      EXPECT_NEAR(grid.at(Vec3(-10, 20, 5)), 0.5 * (1 + more), 1e-2) << bits << halves_turned;
+      EXPECT_NEAR(grid.at(Vec3(-10 + 1.5, 20 + 6, 5 + 4)), 0.5 * (222 + more), 1e-2) << bits << halves_turned;
+      EXPECT_EQ(grid.notes.size(), bits == 32 && !halves_turned ? 1U : 0U);
+    }
+  }
+}
+
 TEST_F(Rtdose, may_count_its_frames_downwards_or_give_their_own_z) {
   RtdoseFile down(16, "-0\\-2\\-4");
   const DoseGrid falling = read(down).value();
