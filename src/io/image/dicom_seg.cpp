@@ -10,12 +10,14 @@
 #include <dcmtk/dcmdata/dcrledrg.h>
 #include <dcmtk/oflog/oflog.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 namespace stylet::detail {
 
@@ -24,6 +26,7 @@ namespace {
 constexpr double kAlike = 1e-3;         // tolerance of directions, and relative tolerance of spacings
 constexpr double kRegular_mm = 0.01;    // distance of a slice from its place in a regular stack, plus kAlike × height
 constexpr double kRegularShare = 0.01;  // the same distance as a share of the slice spacing
+constexpr double kMostOff = 0.1;        // distance of a slice from a multiple of the stated spacing, as a share of it
 constexpr const char* kExportAgain = "The file is damaged; export the segmentation again, e.g. from 3D Slicer";
 
 /// Position and segment of one frame.
@@ -33,6 +36,7 @@ struct Frame {
   Vec3 along_column = Vec3::Zero();          ///< unit direction in which the row index grows
   std::array<double, 2> pixel_mm{0.0, 0.0};  ///< distance between rows, between columns
   double stated_spacing_mm = 0;              ///< distance between slices; 0 if the file does not state it
+  double thickness_mm = 0;                   ///< thickness of the slice; 0 if the file does not state it
   int segment = 0;
   int slice = 0;  ///< index in the stack
 };
@@ -78,8 +82,9 @@ Result<Frame> read_frame(DcmItem* own, DcmItem* shared, bool label_map, const st
   frame.along_column.normalize();
   frame.pixel_mm = {pixel[0], pixel[1]};
   if (const auto between = numbers_of(*measures, DCM_SpacingBetweenSlices); between.size() == 1) {
-    frame.stated_spacing_mm = between[0];
+    frame.stated_spacing_mm = std::abs(between[0]);
   }
+  if (const auto thick = numbers_of(*measures, DCM_SliceThickness); thick.size() == 1) frame.thickness_mm = thick[0];
   if (!(pixel[0] > 0 && pixel[1] > 0)) {
     return damaged(where + ", PixelSpacing",
                    fmt::format("the spacing is {:g} × {:g} mm, numbers above 0 are expected", pixel[0], pixel[1]));
@@ -107,8 +112,9 @@ Result<std::vector<Frame>> read_frames(DcmDataset& data, int count, bool label_m
   return frames;
 }
 
-/// The distance between slices [mm]: the smallest distance between neighbouring frames if it equals the stated one, or
-/// else the median distance, since most neighbours have no empty slice between them. 0 = all frames lie in one slice.
+/// The distance between slices [mm]. Where the file states it and every distance between neighbouring frames is a
+/// multiple of it, it is the stated one (adjusted to the frames), or else the median distance, since most neighbours
+/// have no empty slice between them. 0 = all frames lie in one slice.
 /// @param heights [mm] sorted @param stated [mm] SpacingBetweenSlices; 0 if not stated
 double slice_spacing(const std::vector<double>& heights, double stated) {
   std::vector<double> gaps;
@@ -116,9 +122,50 @@ double slice_spacing(const std::vector<double>& heights, double stated) {
     if (const double gap = heights[s] - heights[s - 1]; gap > kRegular_mm) gaps.push_back(gap);
   }
   if (gaps.empty()) return 0;
+  double steps = 0;  // slices from the lowest frame to the highest, if the stated distance is right
+  const bool fits = stated > kRegular_mm && std::all_of(gaps.begin(), gaps.end(), [&](double gap) {
+                      const double multiple = std::round(gap / stated);
+                      steps += multiple;
+                      return multiple >= 1 && std::abs(gap - multiple * stated) <=
+                                                  kRegular_mm + std::min(kRegularShare * gap, kMostOff * stated);
+                    });
+  if (fits) return std::accumulate(gaps.begin(), gaps.end(), 0.0) / steps;
   std::sort(gaps.begin(), gaps.end());
-  if (std::abs(gaps.front() - stated) <= kRegularShare * stated) return gaps.front();
   return gaps[(gaps.size() - 1) / 2];
+}
+
+/// Notes which slices between the first and the last frame have no frame, and which distance of slices was not taken.
+/// @param stated [mm] SpacingBetweenSlices @param thickness [mm] SliceThickness; both 0 if not stated
+void note_slices(const std::vector<Frame>& frames, double stated, double thickness, Voxels& voxels) {
+  const double spacing = voxels.axes.col(2).norm();
+  const double said = stated > 0 ? stated : thickness;
+  if (said > 0 && std::abs(said - spacing) > kRegularShare * std::max(said, spacing)) {
+    voxels.notes.push_back(fmt::format(
+        "{} is {:g} mm, but the frames {}: slices of {:.4g} mm are taken.",
+        stated > 0 ? "SpacingBetweenSlices" : "SpacingBetweenSlices is not stated, SliceThickness", said,
+        stated > 0 ? "do not lie at multiples of it" : fmt::format("mostly lie {:.4g} mm apart", spacing), spacing));
+  }
+  std::vector<bool> shown(voxels.size[2], false);
+  for (const Frame& frame : frames) shown[static_cast<std::size_t>(frame.slice)] = true;
+  std::vector<std::string> places;
+  std::size_t missing = 0;
+  for (std::size_t k = 0; k < shown.size(); ++k) {
+    if (shown[k]) continue;
+    std::size_t last = k;
+    while (!shown[last + 1]) ++last;  // the last slice has a frame
+    missing += last - k + 1;
+    places.push_back(k == last ? fmt::format("{}", k + 1) : fmt::format("{} to {}", k + 1, last + 1));
+    k = last;
+  }
+  if (missing == 0) return;
+  constexpr std::size_t kMostPlaces = 20;
+  const bool more = places.size() > kMostPlaces;
+  if (more) places.resize(kMostPlaces);
+  voxels.notes.push_back(fmt::format(
+      "{} of {} slices of {:.4g} mm have no frame and are empty: slice{} {}{}, counted from the one at ({:.4g}, "
+      "{:.4g}, {:.4g}) mm.",
+      missing, shown.size(), spacing, missing == 1 ? "" : "s", fmt::join(places, ", "), more ? ", …" : "",
+      voxels.origin.x(), voxels.origin.y(), voxels.origin.z()));
 }
 
 /// Fits a regular stack to the frames and sets the slice index of each frame.
@@ -176,6 +223,7 @@ Result<Voxels> stack_of(std::vector<Frame>& frames, std::size_t rows, std::size_
   voxels.origin = first.position + sorted.front() * normal;
   voxels.origin_field = "ImagePositionPatient";
   voxels.spacing_field = "PixelSpacing";
+  note_slices(frames, first.stated_spacing_mm, first.thickness_mm, voxels);
   return voxels;
 }
 
@@ -351,6 +399,7 @@ Result<LabelImage> parse_dicom_seg(const std::filesystem::path& path, const Mask
   if (!stack) return stack.error();
   LabelImage image;
   if (Result<> frame = set_frame(*stack, image); !frame) return frame.error();
+  image.notes = stack->notes;
   image.labels.resize(stack->size[0] * stack->size[1] * stack->size[2]);
   const Result<std::vector<Segment>> segments = read_segments(data, source);
   if (!segments) return segments.error();

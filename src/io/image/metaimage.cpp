@@ -7,11 +7,16 @@
 #include "image/voxels.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <vtkmetaio/metaImage.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <fstream>
+#include <initializer_list>
 #include <iterator>
+#include <set>
+#include <vector>
 
 namespace stylet::detail {
 
@@ -93,7 +98,26 @@ struct Announced {
   double dimensions = 0;
   std::string data_file;
   std::size_t header_bytes = 0;  ///< position of the voxels in a file with header and data
+  std::set<std::string> keys;    ///< all keys of the header
 };
+
+/// Error if the header does not say where the image lies, how it is turned or how large its voxels are; MetaIO would
+/// put its first voxel at 0, along the axes of the patient, with 1 mm.
+Result<> check_place(const std::set<std::string>& keys, const std::string& source) {
+  const auto has = [&](std::initializer_list<const char*> names) {
+    return std::any_of(names.begin(), names.end(), [&](const char* name) { return keys.contains(name); });
+  };
+  std::vector<const char*> missing;
+  if (!has({"Offset", "Position", "Origin"})) missing.push_back("Offset");
+  if (!has({"TransformMatrix", "Rotation", "Orientation"})) missing.push_back("TransformMatrix");
+  if (!has({"ElementSpacing", "ElementSize"})) missing.push_back("ElementSpacing");
+  if (missing.empty()) return Ok{};
+  return input_error(source,
+                     fmt::format("the header does not state the position of the image in the patient (no {})",
+                                 fmt::join(missing, ", no ")),
+                     "Save the image again with its orientation, e.g. from 3D Slicer; without it left and right are "
+                     "unknown");
+}
 
 /// Reads these fields. MetaIO separates key and value at '=' or ':', whichever comes first, and knows its keys in one
 /// spelling only. A header in which MetaIO might see other lines than this function is an error.
@@ -118,6 +142,7 @@ Result<Announced> announced_in(const fs::path& path) {
                          "Copy or export it again");
     }
     const std::string value = trimmed(line->text.substr(separator + 1));
+    found.keys.insert(key);
     if (key == "NDims") {
       found.dimensions = to_number(value).value_or(0);
       if (!(found.dimensions >= 2 && found.dimensions <= 5)) {
@@ -185,6 +210,7 @@ Result<LabelImage> parse_metaimage(const std::filesystem::path& path, const Mask
   };
   const Result<Announced> announced = announced_in(path);
   if (!announced) return announced.error();
+  if (Result<> placed = check_place(announced->keys, source); !placed) return placed.error();
   const Result<fs::path> data_path = voxel_file(path, announced->data_file);
   if (!data_path) return data_path.error();
   MetaImage image;

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <teem/nrrd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -87,11 +88,23 @@ Result<Vec3> to_lps(const Nrrd& nrrd, const std::string& source) {
 
 /// Length of a unit [mm]; 0 if the unit is unknown.
 double unit_mm(const char* unit) {
-  const std::string name = unit == nullptr ? "" : lower(trimmed(unit));
-  if (name.empty() || name == "mm" || name == "millimeter" || name == "millimetre") return 1.0;
-  if (name == "cm") return 10.0;
-  if (name == "m") return 1000.0;
-  if (name == "um" || name == "µm") return 0.001;
+  struct Unit {
+    double mm;
+    std::set<std::string_view> names;
+  };
+  static const std::vector<Unit> units{
+      {1.0, {"", "mm", "millimeter", "millimetre"}},
+      {10.0, {"cm", "centimeter", "centimetre"}},
+      {1000.0, {"m", "meter", "metre"}},
+      {0.001, {"um", "\u00b5m", "\u03bcm", "micron", "micrometer", "micrometre"}},  // micro sign, Greek letter mu
+      {1e-6, {"nm", "nanometer", "nanometre"}},
+      {25.4, {"in", "inch", "inches", "\""}},
+  };
+  std::string name = unit == nullptr ? "" : lower(trimmed(unit));
+  if (name.size() > 3 && name.ends_with('s') && name != "inches") name.pop_back();
+  for (const Unit& known : units) {
+    if (known.names.contains(name)) return known.mm;
+  }
   return 0.0;
 }
 
@@ -134,6 +147,14 @@ std::map<int, SegmentTexts> segment_texts(const Nrrd& nrrd) {
   return segments;
 }
 
+/// Whether the file is one of 3D Slicer up to 4.10: its segments have names, but neither a label nor a layer, since
+/// each of them is a volume of its own.
+bool has_volume_for_each(const std::map<int, SegmentTexts>& segments) {
+  return !segments.empty() && std::none_of(segments.begin(), segments.end(), [](const auto& s) {
+    return s.second.value.has_value() || s.second.layer.has_value();
+  });
+}
+
 /// Converts a text to a whole number; empty if it is not one or out of bounds.
 std::optional<int> whole_number(const std::string& text, int least, int most) {
   const double value = to_number(text).value_or(-1.0);
@@ -143,12 +164,23 @@ std::optional<int> whole_number(const std::string& text, int least, int most) {
 
 /// The segments that the header describes correctly; notes say what is wrong with the others.
 /// @param layers number of layers in the file
-std::vector<SegmentKeys> segment_keys(const Nrrd& nrrd, std::size_t layers, std::vector<std::string>& notes) {
+/// @param own_volumes segment N is volume N (has_volume_for_each()), and its label there is 1
+std::vector<SegmentKeys> segment_keys(const std::map<int, SegmentTexts>& described, std::size_t layers,
+                                      bool own_volumes, std::vector<std::string>& notes) {
   std::vector<SegmentKeys> segments;
-  for (const auto& [n, texts] : segment_texts(nrrd)) {
+  for (const auto& [n, texts] : described) {
     const std::string called = texts.name && !texts.name->empty()
                                    ? fmt::format("Segment '{}'", *texts.name)
                                    : fmt::format("The segment with number {} in the header", n);
+    if (own_volumes) {
+      if (static_cast<std::size_t>(n) < layers) {
+        segments.push_back({texts.name.value_or(""), 1, static_cast<std::size_t>(n)});
+      } else {
+        notes.push_back(
+            fmt::format("{} has no voxels: it would be volume {}, and the file has {}.", called, n + 1, layers));
+      }
+      continue;
+    }
     const std::string value = texts.value.value_or(std::to_string(n + 1)), layer = texts.layer.value_or("0");
     const auto number = whole_number(value, 1, 65535), at = whole_number(layer, 0, 65535);
     if (!number) {
@@ -198,6 +230,13 @@ Result<Voxels> voxels_of(const Nrrd& nrrd, const Vec3& lps, const std::string& s
   voxels.spacing_field = "space directions";
   for (unsigned a = 0; a < 3; ++a) {
     const NrrdAxisInfo& axis = nrrd.axis[a];
+    const bool no_step = std::isnan(axis.spaceDirection[0]);
+    if (no_step || std::isnan(nrrd.spaceOrigin[0])) {
+      return input_error(source,
+                         fmt::format("the header does not state the position of the image in the patient (no '{}')",
+                                     no_step ? "space directions" : "space origin"),
+                         "Write 'space', 'space directions' and 'space origin'");
+    }
     const double unit = unit_mm(nrrd.spaceUnits[a]);
     if (unit == 0.0) {
       return input_error(source, fmt::format("the unit '{}' is unknown", nrrd.spaceUnits[a]),
@@ -215,8 +254,9 @@ Result<Voxels> voxels_of(const Nrrd& nrrd, const Vec3& lps, const std::string& s
 /// Merges the segments of all layers into one image. Labels that the header does not describe become segments without a
 /// name. Each layer counts its labels from 1; if two layers share a label, all segments are numbered by their order in
 /// the file instead.
-Result<LabelImage> merge_layers(const Nrrd& nrrd, int axis, std::vector<SegmentKeys> keys, const Vec3& lps,
-                                std::span<const std::string> skip, const std::string& source) {
+/// @param own_volumes each layer is one segment, whatever its values are
+Result<LabelImage> merge_layers(const Nrrd& nrrd, int axis, std::vector<SegmentKeys> keys, bool own_volumes,
+                                const Vec3& lps, std::span<const std::string> skip, const std::string& source) {
   LabelImage image;
   std::vector<Run> runs;
   for (std::size_t layer = 0; layer < nrrd.axis[axis].size; ++layer) {
@@ -228,15 +268,15 @@ Result<LabelImage> merge_layers(const Nrrd& nrrd, int axis, std::vector<SegmentK
       if (Result<> frame = set_frame(*voxels, image); !frame) return frame.error();
       image.labels.resize((*voxels).size[0] * (*voxels).size[1] * (*voxels).size[2]);
     }
-    Result<std::vector<std::uint16_t>> labels = labels_of(*voxels);
+    Result<std::vector<std::uint16_t>> labels = labels_of(*voxels, image.notes);
     if (!labels) return labels.error();
     std::vector<int> place(std::size_t{1} << 16, -1);  // position in the list, by the segment's value
     for (std::size_t k = 0; k < keys.size(); ++k) {
       if (keys[k].layer == layer) place[keys[k].value] = static_cast<int>(k);
     }
     for (std::size_t n = 0; n < labels->size(); ++n) {
-      const std::uint16_t label = (*labels)[n];
-      if (label == 0) continue;
+      if ((*labels)[n] == 0) continue;
+      const std::uint16_t label = own_volumes ? std::uint16_t{1} : (*labels)[n];
       if (place[label] < 0) {
         place[label] = static_cast<int>(keys.size());
         keys.push_back({"", label, layer});
@@ -253,9 +293,16 @@ Result<LabelImage> merge_layers(const Nrrd& nrrd, int axis, std::vector<SegmentK
   std::vector<Segment> segments;
   for (const SegmentKeys& key : keys)
     segments.push_back({unique ? key.value : static_cast<int>(segments.size()) + 1, key.name, ""});
-  image.notes.push_back(fmt::format(
-      "{} segments in {} layers were merged into one mask{}.", segments.size(), nrrd.axis[axis].size,
-      unique ? "" : "; since layers use the same labels, segments are numbered 1, 2, … in the order of the file"));
+  if (own_volumes) {
+    image.notes.push_back(fmt::format(
+        "{} segments, each a volume of its own, were merged into one mask and numbered 1, 2, … in the order "
+        "of the file.",
+        segments.size()));
+  } else {
+    image.notes.push_back(fmt::format(
+        "{} segments in {} layers were merged into one mask{}.", segments.size(), nrrd.axis[axis].size,
+        unique ? "" : "; since layers use the same labels, segments are numbered 1, 2, … in the order of the file"));
+  }
   if (Result<> painted = paint(segments, runs, skip, image); !painted) return painted.error();
   if (Result<> extent = check_extent(image); !extent) return extent.error();
   return image;
@@ -274,7 +321,7 @@ Result<> check_data_file(const std::filesystem::path& path, const std::string& n
 
 /// Checks the header before Teem reads it, because Teem opens any file that a field names, and writes beyond the end of
 /// its message buffer if a field has a very long word. A line is a field if its first ": " comes before its first ":=";
-/// otherwise it is a key with its value.
+/// otherwise it is a key with its value. Free text, which Teem does not take apart, may be as long as that of a key.
 Result<> check_header(const std::filesystem::path& path) {
   constexpr std::size_t kLongestField = 512;
   std::ifstream file(path, std::ios::binary);
@@ -282,7 +329,10 @@ Result<> check_header(const std::filesystem::path& path) {
     const std::optional<HeaderLine> line = next_header_line(file);
     if (!line || line->text.empty()) return Ok{};  // an empty line ends the header
     const std::string& text = line->text;
-    const bool field = text.front() != '#' && text.find(": ") <= text.find(":=");
+    const auto colon = text.find(':');
+    const std::string key = lower(trimmed(text.substr(0, colon)));
+    const bool field =
+        text.front() != '#' && text.find(": ") <= text.find(":=") && key != "content" && key != "sample units";
     const std::size_t most = field ? kLongestField : kLongestHeaderLine;
     if (!line->whole || text.size() > most) {
       return input_error(fmt::format("{}, line {}", path.string(), number),
@@ -290,9 +340,7 @@ Result<> check_header(const std::filesystem::path& path) {
                                      line->whole ? "" : "more than ", text.size(), most),
                          "The file is damaged; copy or export it again");
     }
-    const auto colon = text.find(':');
     if (colon == std::string::npos || text.front() == '#') continue;
-    const std::string key = lower(trimmed(text.substr(0, colon)));
     if (key != "data file" && key != "datafile") continue;
     if (Result<> sound = check_data_file(path, trimmed(text.substr(colon + 1))); !sound) return sound;
   }
@@ -323,7 +371,10 @@ Result<LabelImage> parse_nrrd(const std::filesystem::path& path, const MaskReadO
   }
   if (axis >= 0) sizes.push_back(nrrd->axis[axis].size);
   std::vector<std::string> notes;
-  const std::vector<SegmentKeys> keys = segment_keys(*nrrd, axis < 0 ? 1 : nrrd->axis[axis].size, notes);
+  const std::map<int, SegmentTexts> described_segments = segment_texts(*nrrd);
+  const bool own_volumes = axis >= 0 && has_volume_for_each(described_segments);
+  const std::vector<SegmentKeys> keys =
+      segment_keys(described_segments, axis < 0 ? 1 : nrrd->axis[axis].size, own_volumes, notes);
   const bool described = !keys.empty() || !notes.empty();
   const bool layered = axis >= 0 && nrrd->axis[axis].size > 1 && described && options.volume == 0;
   Result<std::size_t> volume =
@@ -339,7 +390,7 @@ Result<LabelImage> parse_nrrd(const std::filesystem::path& path, const MaskReadO
     return image;
   };
   if (layered) {
-    Result<LabelImage> merged = merge_layers(*nrrd, axis, keys, *lps, options.skip, source);
+    Result<LabelImage> merged = merge_layers(*nrrd, axis, keys, own_volumes, *lps, options.skip, source);
     return merged ? with_notes(std::move(*merged)) : std::move(merged);
   }
   Result<NrrdPointer> slice = slice_of(*nrrd, axis, *volume, source);

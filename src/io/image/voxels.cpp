@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <type_traits>
 #include <unordered_set>
 #include <vector>
 
@@ -24,7 +25,9 @@ constexpr std::size_t kFewValues = 16;
 constexpr std::size_t kManyValues = 256;
 constexpr double kAlikeInMask = 1.0 / 3.0;   // least share of equal neighbours along i in a mask, without background
 constexpr std::size_t kMostCounted = 65536;  // limit for counting different values for a message
-constexpr double kWhole = 1e-3;              // largest distance from a whole number
+constexpr double kExact = 1e-5;              // distance from a whole number that single precision explains
+constexpr double kWhole = 0.01;              // largest distance of a label from a whole number
+constexpr double kWholeScaled = 0.05;        // the same if the image is scaled in steps of at least twice this distance
 constexpr double max_shear = 1e-3;           // largest |cosine| between two axes; headers have single precision
 
 const char* const mask_cure =
@@ -37,6 +40,10 @@ struct Values {
   const Voxels& voxels;
   double operator()(std::size_t n) const {
     return voxels.slope * static_cast<double>(static_cast<const T*>(voxels.data)[n]) + voxels.intercept;
+  }
+  /// Largest distance of a label from a whole number: a scaled label may be off by half a step.
+  [[nodiscard]] double tolerance() const {
+    return std::is_floating_point_v<T> ? kWhole : std::clamp(std::abs(voxels.slope) / 2 + kExact, kWhole, kWholeScaled);
   }
 };
 
@@ -77,63 +84,116 @@ bool varies_like_picture(const std::vector<std::uint16_t>& labels, std::size_t d
   return static_cast<double>(alike) < kAlikeInMask * static_cast<double>(pairs);
 }
 
+/// What the values of an image are besides labels.
+struct Oddities {
+  std::size_t not_numbers = 0;         ///< number of voxels that are NaN
+  double negative = 0;                 ///< the only negative value, if the number of its voxels is not 0
+  std::size_t negatives = 0;           ///< number of its voxels
+  std::size_t zeros = 0;               ///< number of voxels that are 0
+  double farthest = 0;                 ///< largest distance from a whole number
+  std::size_t farthest_at = 0;         ///< its voxel
+  std::optional<std::size_t> outside;  ///< the first voxel whose value is not a possible label
+};
+
+/// Adds notes on what was taken as background, and on values that were rounded.
+template <class T>
+void note_odd_values(const Oddities& odd, const Values<T>& value, std::vector<std::string>& notes) {
+  const auto plural = [](std::size_t n) { return n == 1 ? "" : "s"; };
+  if (odd.not_numbers > 0) {
+    notes.push_back(fmt::format("{} voxel{} no number (NaN): taken as background.", odd.not_numbers,
+                                odd.not_numbers == 1 ? " is" : "s are"));
+  }
+  if (odd.negatives > 0) {
+    notes.push_back(fmt::format("The value {:g} of {} voxel{} is taken as background{}.", odd.negative, odd.negatives,
+                                plural(odd.negatives), odd.zeros > 0 ? ", as 0 is" : ""));
+  }
+  if (odd.farthest > kExact) {
+    notes.push_back(fmt::format("Labels are rounded to whole numbers; the farthest from one is {:.6g} at {}.",
+                                value(odd.farthest_at), voxel_name(value.voxels, odd.farthest_at)));
+  }
+}
+
 /// Copies values to labels; T is the file's type.
 template <class T>
-Result<> copy_labels(const Voxels& voxels, std::vector<std::uint16_t>& labels) {
+Result<> copy_labels(const Voxels& voxels, std::vector<std::uint16_t>& labels, std::vector<std::string>& notes) {
   const Values<T> value{voxels};
   const std::size_t count = labels.size();
+  const double tolerance = value.tolerance();
   std::vector<bool> seen(std::numeric_limits<std::uint16_t>::max() + std::size_t{1});
   std::size_t different = 0;
-  std::optional<std::size_t> outside;  // the first voxel whose value is not a possible label
+  Oddities odd;
+  std::optional<std::size_t> below;  // the first voxel with a negative value
   for (std::size_t n = 0; n < count; ++n) {
     const double v = value(n), whole = std::round(v);
+    if (std::isnan(v)) {
+      ++odd.not_numbers;
+      continue;
+    }
     if (!std::isfinite(v)) {
       return input_error(fmt::format("{}, {}", voxels.source, voxel_name(voxels, n)),
                          fmt::format("the value is {}, a whole number is expected", v), mask_cure);
     }
-    if (std::abs(v - whole) > kWhole) {
+    if (std::abs(v - whole) > odd.farthest) {
+      odd.farthest = std::abs(v - whole);
+      odd.farthest_at = n;
+    }
+    if (std::abs(v - whole) > tolerance) {
       return is_picture(value, count,
                         fmt::format(", and {:.6g} at {} is not a whole number", v, voxel_name(voxels, n)));
     }
-    if (whole < 0 || whole > std::numeric_limits<std::uint16_t>::max()) {
-      if (!outside) outside = n;
+    if (whole < 0 && (odd.negatives == 0 || whole == odd.negative)) {
+      if (!below) below = n;
+      odd.negative = whole;
+      ++odd.negatives;
       continue;
     }
+    if (whole < 0 || whole > std::numeric_limits<std::uint16_t>::max()) {
+      if (!odd.outside) odd.outside = whole < 0 ? below : n;
+      continue;
+    }
+    if (whole == 0) ++odd.zeros;
     labels[n] = static_cast<std::uint16_t>(whole);
     if (!seen[labels[n]]) ++different;
     seen[labels[n]] = true;
   }
-  if (outside) {
-    return is_picture(
-        value, count,
-        fmt::format(", and {:.6g} at {} is not a label (0…65535)", value(*outside), voxel_name(voxels, *outside)));
+  const bool shows_something = different > (odd.zeros > 0 ? 1U : 0U);
+  if (below && ((odd.negative != -1 && odd.zeros > 0) || !shows_something)) odd.outside = odd.outside.value_or(*below);
+  if (odd.outside) {
+    return is_picture(value, count,
+                      fmt::format(", and {:.6g} at {} is not a label (0…65535)", value(*odd.outside),
+                                  voxel_name(voxels, *odd.outside)));
+  }
+  if (odd.not_numbers > 0 && !shows_something) {
+    return input_error(voxels.source,
+                       fmt::format("the mask is empty: {} voxels are nan, all others 0", odd.not_numbers), mask_cure);
   }
   if (varies_like_picture(labels, different)) return is_picture(value, count, "");
+  note_odd_values(odd, value, notes);
   return Ok{};
 }
 
-Result<> copy_labels(const Voxels& voxels, std::vector<std::uint16_t>& labels) {
+Result<> copy_labels(const Voxels& voxels, std::vector<std::uint16_t>& labels, std::vector<std::string>& notes) {
   switch (voxels.type) {
     case VoxelType::int8:
-      return copy_labels<std::int8_t>(voxels, labels);
+      return copy_labels<std::int8_t>(voxels, labels, notes);
     case VoxelType::uint8:
-      return copy_labels<std::uint8_t>(voxels, labels);
+      return copy_labels<std::uint8_t>(voxels, labels, notes);
     case VoxelType::int16:
-      return copy_labels<std::int16_t>(voxels, labels);
+      return copy_labels<std::int16_t>(voxels, labels, notes);
     case VoxelType::uint16:
-      return copy_labels<std::uint16_t>(voxels, labels);
+      return copy_labels<std::uint16_t>(voxels, labels, notes);
     case VoxelType::int32:
-      return copy_labels<std::int32_t>(voxels, labels);
+      return copy_labels<std::int32_t>(voxels, labels, notes);
     case VoxelType::uint32:
-      return copy_labels<std::uint32_t>(voxels, labels);
+      return copy_labels<std::uint32_t>(voxels, labels, notes);
     case VoxelType::int64:
-      return copy_labels<std::int64_t>(voxels, labels);
+      return copy_labels<std::int64_t>(voxels, labels, notes);
     case VoxelType::uint64:
-      return copy_labels<std::uint64_t>(voxels, labels);
+      return copy_labels<std::uint64_t>(voxels, labels, notes);
     case VoxelType::float32:
-      return copy_labels<float>(voxels, labels);
+      return copy_labels<float>(voxels, labels, notes);
     case VoxelType::float64:
-      return copy_labels<double>(voxels, labels);
+      return copy_labels<double>(voxels, labels, notes);
   }
   return Ok{};
 }
@@ -168,6 +228,43 @@ Result<> check_extent(const LabelImage& image) {
                        "Correct the voxel spacing; the unit of the file is probably not mm");
   }
   return Ok{};
+}
+
+std::size_t bytes_in(VoxelType type) {
+  switch (type) {
+    case VoxelType::int8:
+    case VoxelType::uint8:
+      return 1;
+    case VoxelType::int16:
+    case VoxelType::uint16:
+      return 2;
+    case VoxelType::int32:
+    case VoxelType::uint32:
+    case VoxelType::float32:
+      return 4;
+    case VoxelType::int64:
+    case VoxelType::uint64:
+    case VoxelType::float64:
+      return 8;
+  }
+  return 0;
+}
+
+std::optional<std::string> fault_of_axes(const Mat3& axes) {
+  for (int a = 0; a < 3; ++a) {
+    if (const double length = axes.col(a).norm(); !(std::isfinite(length) && length > 0))
+      return fmt::format("the step along the image axis {} is {:g} long", "ijk"[a], length);
+  }
+  for (int a = 0; a < 3; ++a) {
+    for (int b = a + 1; b < 3; ++b) {
+      const double cosine = axes.col(a).normalized().dot(axes.col(b).normalized());
+      if (std::abs(cosine) > max_shear) {
+        return fmt::format("the image axes {} and {} enclose {:.2f}°, 90° is expected (a sheared image)", "ijk"[a],
+                           "ijk"[b], std::acos(std::clamp(cosine, -1.0, 1.0)) * 180.0 / M_PI);
+      }
+    }
+  }
+  return std::nullopt;
 }
 
 Result<> set_frame(const Voxels& voxels, LabelImage& image) {
@@ -205,16 +302,8 @@ Result<> set_frame(const Voxels& voxels, LabelImage& image) {
     image.spacing[axis] = length;
     image.direction.col(axis) = voxels.axes.col(axis) / length;
   }
-  for (int a = 0; a < 3; ++a) {
-    for (int b = a + 1; b < 3; ++b) {
-      const double cosine = image.direction.col(a).dot(image.direction.col(b));
-      if (std::abs(cosine) > max_shear) {
-        return input_error(voxels.source,
-                           fmt::format("the image axes {} and {} enclose {:.2f}°, 90° is expected (a sheared image)",
-                                       "ijk"[a], "ijk"[b], std::acos(std::clamp(cosine, -1.0, 1.0)) * 180.0 / M_PI),
-                           "Resample the mask to a regular grid, e.g. with 3D Slicer");
-      }
-    }
+  if (const auto fault = fault_of_axes(voxels.axes)) {
+    return input_error(voxels.source, *fault, "Resample the mask to a regular grid, e.g. with 3D Slicer");
   }
   image.source = voxels.source;
   image.origin = voxels.origin;
@@ -222,9 +311,9 @@ Result<> set_frame(const Voxels& voxels, LabelImage& image) {
   return Ok{};
 }
 
-Result<std::vector<std::uint16_t>> labels_of(const Voxels& voxels) {
+Result<std::vector<std::uint16_t>> labels_of(const Voxels& voxels, std::vector<std::string>& notes) {
   std::vector<std::uint16_t> labels(voxels.size[0] * voxels.size[1] * voxels.size[2]);
-  if (Result<> copied = copy_labels(voxels, labels); !copied) return copied.error();
+  if (Result<> copied = copy_labels(voxels, labels, notes); !copied) return copied.error();
   return labels;
 }
 
@@ -257,7 +346,8 @@ Result<std::size_t> choose_volume(std::span<const std::size_t> sizes, int chosen
 Result<LabelImage> to_label_image(const Voxels& voxels) {
   LabelImage image;
   if (Result<> frame = set_frame(voxels, image); !frame) return frame.error();
-  Result<std::vector<std::uint16_t>> labels = labels_of(voxels);
+  image.notes = voxels.notes;
+  Result<std::vector<std::uint16_t>> labels = labels_of(voxels, image.notes);
   if (!labels) return labels.error();
   image.labels = std::move(*labels);
   if (Result<> extent = check_extent(image); !extent) return extent.error();

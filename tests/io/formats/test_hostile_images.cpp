@@ -148,7 +148,7 @@ TEST(HostileImages, no_line_of_an_nrrd_header_hides_from_the_checks) {
   expect_refused(read_mask("m.nrrd", nrrd(mask, "raw", "key:=" + longest + "\ndata file: /etc/passwd\n")),
                  {"m.nrrd, line 10", "more than 65535 characters"});
   expect_refused(read_mask("m.nrrd", nrrd(mask, "raw", "# " + longest + "\n")), {"m.nrrd, line 10"});
-  expect_refused(read_mask("m.nrrd", nrrd(mask, "raw", "content: " + word + ":=\n")),
+  expect_refused(read_mask("m.nrrd", nrrd(mask, "raw", "labels: " + word + ":=\n")),
                  {"m.nrrd, line 10", "at most 512 are expected"});
   EXPECT_TRUE(read_mask("m.nrrd", nrrd(mask, "raw", "key:=" + word + "\n")).ok());
 }

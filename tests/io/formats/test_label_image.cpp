@@ -106,8 +106,7 @@ TEST(LabelImage, nrrd_units_are_turned_into_mm) {
   centimetres.origin *= 0.1;
   expect_same_place(read_mask("mask.nrrd", nrrd(centimetres, "raw", "space units: \"cm\" \"cm\" \"cm\"\n")), mask,
                     "cm");
-  expect_refused(read_mask("mask.nrrd", nrrd(mask, "raw", "space units: \"inch\" \"inch\" \"inch\"\n")),
-                 {"unit 'inch'"});
+  expect_refused(read_mask("mask.nrrd", nrrd(mask, "raw", "space units: \"ell\" \"ell\" \"ell\"\n")), {"unit 'ell'"});
 }
 
 TEST(LabelImage, segment_names_of_seg_nrrd_are_kept) {

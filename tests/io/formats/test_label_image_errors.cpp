@@ -36,7 +36,7 @@ TEST(LabelImageErrors, whole_numbers_in_floating_point_are_labels_others_are_not
       {"an image, not a mask", "3 different values from 0 to 1", "voxel (2, 3, 2)", "0.5", "not a whole number",
        "probability"});
   expect_refused(read_mask("n.nii", typed<float>(nifti_float, [](std::uint8_t l) { return l != 0 ? NAN : 0.0F; })),
-                 {"voxel (2, 3, 2)", "nan"});
+                 {"the mask is empty", "nan"});
 }
 
 TEST(LabelImageErrors, negative_labels_are_refused) {

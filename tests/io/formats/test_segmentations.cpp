@@ -119,6 +119,44 @@ TEST(DicomSeg, slices_without_a_frame_are_empty) {
   EXPECT_EQ(label_at(*image, frame.origin + frame.axes * Vec3(4, 4, 4)), 1);
 }
 
+TEST(DicomSeg, a_stated_distance_of_slices_counts_where_most_slices_have_no_frame) {
+  const Folder folder;
+  const auto seg = [&](const std::function<bool(int)>& in, const char* stated) {
+    Mask frame;
+    frame.axes = oblique_axes();
+    const auto inside = [&](int i, int j, int k) { return in_gland(i, j, 3) && in(k); };
+    return read_label_image(
+        edit_dicom(write_seg(folder / "seg.dcm", frame, {{"Prostate", "Prostate", inside}}), [&](DcmDataset& data) {
+          DcmItem* shared = nullptr;
+          DcmItem* measures = nullptr;
+          data.findAndGetSequenceItem(DCM_SharedFunctionalGroupsSequence, shared);
+          shared->findAndGetSequenceItem(DCM_PixelMeasuresSequence, measures);
+          if (*stated != 0) measures->putAndInsertString(DCM_SpacingBetweenSlices, stated);
+        }));
+  };
+  for (const char* stated : {"4", "-4", "3.99"}) {
+    const auto odd = seg([](int k) { return k % 2 == 1; }, stated), far = seg([](int k) { return k % 6 == 0; }, stated),
+               uneven = seg([](int k) { return k == 0 || k == 2 || k == 5; }, stated);
+    ASSERT_TRUE(odd.ok() && far.ok() && uneven.ok()) << why(odd) << why(far) << why(uneven);
+    for (const auto* image : {&*odd, &*far, &*uneven}) EXPECT_NEAR(image->spacing[2], 4, 1e-6) << stated;
+    EXPECT_EQ(odd->size[2], 7);
+    EXPECT_EQ(far->size[2], 7);
+    EXPECT_EQ(uneven->size[2], 6);
+    EXPECT_TRUE(notes_say(*odd, "3 of 7 slices of 4 mm have no frame and are empty: slices 2, 4, 6,"));
+    EXPECT_TRUE(notes_say(*far, "5 of 7 slices of 4 mm have no frame and are empty: slices 2 to 6,"));
+    EXPECT_TRUE(notes_say(*uneven, "slices 2, 4 to 5,"));
+    EXPECT_EQ(std::count(far->labels.begin(), far->labels.end(), 1), 2 * 7 * 6);
+  }
+  const auto wrong = seg([](int k) { return k % 2 == 1; }, "3"), thick = seg([](int k) { return k % 2 == 1; }, "");
+  ASSERT_TRUE(wrong.ok() && thick.ok()) << why(wrong) << why(thick);
+  EXPECT_NEAR(wrong->spacing[2], 8, 1e-6);
+  EXPECT_TRUE(notes_say(*wrong, "SpacingBetweenSlices is 3 mm, but the frames do not lie at multiples of it"));
+  EXPECT_TRUE(notes_say(*thick, "SpacingBetweenSlices is not stated, SliceThickness is 4 mm"));
+  const auto full = seg([](int) { return true; }, "4");
+  ASSERT_TRUE(full.ok()) << why(full);
+  EXPECT_FALSE(notes_say(*full, "slices"));
+}
+
 TEST(DicomSeg, a_fractional_segment_begins_at_one_half) {
   const Folder folder;
   for (const int most : {255, 100}) {
@@ -277,4 +315,27 @@ TEST(LayeredNrrd, labels_that_no_other_layer_has_are_kept) {
   ASSERT_TRUE(image.ok()) << why(image);
   EXPECT_EQ(label_at(*image, frame.origin + frame.axes * Vec3(4, 4, 3)), 7);
   EXPECT_EQ(image->names.at(7), "urethra");
+}
+
+TEST(LayeredNrrd, a_volume_for_each_segment_needs_no_labels_and_layers) {
+  const Mask frame;
+  auto urethra = voxels(frame, in_urethra);
+  for (std::uint8_t& v : urethra) v *= 255;
+  const std::string keys =
+      "Segment0_ID:=Segment_1\nSegment0_Name:=Prostate\nSegment1_ID:=Segment_2\n"
+      "Segment1_Name:=Urethra\n";
+  const std::string text = layered_nrrd(frame, {voxels(frame, in_gland), urethra}, keys);
+  const auto image = read_mask("case.seg.nrrd", text);
+  ASSERT_TRUE(image.ok()) << why(image);
+  EXPECT_EQ(image->names, (std::map<int, std::string>{{1, "Prostate"}, {2, "Urethra"}}));
+  EXPECT_EQ(std::count(image->labels.begin(), image->labels.end(), 1), 7 * 6 * 6 - 4 * 6);
+  EXPECT_EQ(std::count(image->labels.begin(), image->labels.end(), 2), 4 * 8);
+  EXPECT_TRUE(notes_say(*image, "'Urethra' and 'Prostate' share 24 voxels"));
+  EXPECT_FALSE(notes_say(*image, "without a name"));
+  const auto more = read_mask("case.seg.nrrd", replaced(text, "Segment1_ID", "Segment7_Name:=lost\nSegment1_ID"));
+  ASSERT_TRUE(more.ok()) << why(more);
+  EXPECT_TRUE(notes_say(*more, "Segment 'lost' has no voxels: it would be volume 8, and the file has 2."));
+  const auto one = read_mask("case.seg.nrrd", layered_nrrd(frame, {voxels(frame, in_gland)}, "Segment0_Name:=Gland\n"));
+  ASSERT_TRUE(one.ok()) << why(one);
+  EXPECT_EQ(one->names, (std::map<int, std::string>{{1, "Gland"}}));
 }
