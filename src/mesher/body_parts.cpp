@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/mesher/body_parts.hpp"
 
+#include "stylet/geom/structure_names.hpp"
 #include "words.hpp"
 
 #include <algorithm>
@@ -68,7 +69,7 @@ bool names_one_of(std::string_view name, const auto& stems, const auto& inside) 
   for (std::size_t k = 1; k < words.size(); ++k) tried.push_back(words[k - 1] + words[k]);  // "spinal cord"
   for (std::string& word : tried) {
     while (!word.empty() && word.back() >= '0' && word.back() <= '9') word.pop_back();
-    if (std::any_of(stems.begin(), stems.end(), [&](std::string_view stem) { return is_stem(word, stem); }))
+    if (std::any_of(stems.begin(), stems.end(), [&](std::string_view stem) { return is_stem(word, folded(stem)); }))
       return true;
   }
   return std::any_of(inside.begin(), inside.end(),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "structure_choice.hpp"
 
+#include "organ_names.hpp"
 #include "stylet/core/nearest_name.hpp"
 #include "stylet/geom/structure_names.hpp"
 #include "words.hpp"
@@ -44,18 +45,19 @@ bool has_word(std::string_view name, std::initializer_list<std::string_view> wan
   return false;
 }
 
+/// Whether a part of the name is a word for the gland.
+bool names_gland(std::string_view name) {
+  const std::string text = plain(name);
+  constexpr std::array<std::string_view, 5> words{"prost", "простат", "предстат", "前列腺", "前立腺"};
+  return std::any_of(words.begin(), words.end(), [&](std::string_view w) { return text.find(w) != std::string::npos; });
+}
+
 /// How well the name of a planning volume fits the gland, whatever its kind: 0 = it names the gland; 1 = it names no
 /// place; 2 and 3 = the same for a volume that also names lymph nodes or a boost, which are beside the gland or a part
 /// of it.
 std::size_t naming_rank(std::string_view name) {
   const std::size_t other = has_word(name, {"ln", "lns", "node", "nodes", "nodal", "boost"}) ? 2 : 0;
-  return other + (lower(std::string(name)).find("prost") == std::string::npos ? 1 : 0);
-}
-
-/// "left", "right" or "", by the words of a name.
-std::string_view side_of(std::string_view name) {
-  if (has_word(name, {"left", "l", "lt"})) return "left";
-  return has_word(name, {"right", "r", "rt"}) ? "right" : "";
+  return other + (names_gland(name) ? 0 : 1);
 }
 
 bool is_planning(std::string_view kind) { return planning_rank(kind) < kPlanning.size(); }

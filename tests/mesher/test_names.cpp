@@ -80,6 +80,80 @@ TEST(CanonicalRegion, planning_helpers_and_channels_are_not_anatomy) {
   }
 }
 
+TEST(CanonicalRegion, organs_are_recognised_in_several_languages_whatever_their_accents_and_case) {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> names{
+      {"prostate",
+       {"PROSTATA", "Vorsteherdrüse", "VORSTEHERDRÜSE", "próstata", "Pro\u0301stata", "PRÓSTATA", "Glande prostatique",
+        "glándula prostática", "前列腺", "攝護腺", "前立腺", "ＰＲＯＳＴＡＴＥ", "Простата", "ПРОСТАТА",
+        "Предстательная железа", "предстательной железы"}},
+      {"urethra",
+       {"HARNRÖHRE", "Harnroehre", "Urètre", "URETRE", "uretra prostática", "尿道", "前列腺尿道", "Уретра",
+        "Мочеиспускательный канал"}},
+      {"bladder",
+       {"Harnblase", "Vessie", "Vejiga urinaria", "膀胱", "Мочевой пузырь", "МОЧЕВОЙ ПУЗЫРЬ", "моч. пузырь"}},
+      {"rectum", {"Mastdarm", "Rektum", "Recto", "paroi rectale", "直肠", "直腸", "Прямая кишка", "прямой кишки"}},
+      {"seminal_vesicles",
+       {"Samenblase", "Samenbläschen", "Vésicules séminales", "vesicules_seminales", "Vesículas seminales", "精囊",
+        "精嚢腺", "Семенные пузырьки", "семенной пузырёк"}},
+      {"pubic_arch",
+       {"Schambeinbogen", "Symphyse pubienne", "Sínfisis del pubis", "arco púbico", "耻骨联合", "恥骨結合",
+        "Лобковый симфиз"}},
+      {"body", {"Außenkontur", "KÖRPER", "Contour externe", "Contorno externo", "体表", "外轮廓", "Тело", "Кожа"}},
+      {"femur_left",
+       {"Hüftkopf links", "Femurkopf li", "Tête fémorale gauche", "TETE FEMORALE G", "cabeza femoral izquierda",
+        "左股骨头", "股骨头（左）", "左大腿骨頭", "Головка левой бедренной кости", "Головка бедра лев."}},
+      {"femur_right",
+       {"Hüftkopf rechts", "Tête fémorale droite", "Cabeza femoral der", "右侧股骨头", "右大腿骨頭",
+        "Правая головка бедренной кости"}},
+      {"peripheral_zone",
+       {"periphere Zone", "Zone périphérique", "zona periférica", "外周带", "左外周带", "前列腺外周带", "辺縁域",
+        "Периферическая зона"}},
+      {"transition_zone",
+       {"Übergangszone", "zone de transition", "Zona de transición", "移行带", "移行域", "Переходная зона"}},
+      {"central_zone", {"zentrale Zone", "zone centrale", "zona central", "中央带", "Центральная зона"}}};
+  for (const auto& [canonical, written] : names) {
+    for (const std::string& name : written) EXPECT_EQ(canonical_region(name), canonical) << name;
+  }
+}
+
+TEST(CanonicalRegion, helpers_and_neighbours_are_not_organs_in_any_language) {
+  for (const std::string name : {"Prostata-PTV",
+                                 "Prostata+5mm",
+                                 "optBlase",
+                                 "Blase minus PTV",
+                                 "Blasenhals",
+                                 "Prostatabett",
+                                 "Ring Prostata",
+                                 "Urethra-Bulbus",
+                                 "Rektum in PTV",
+                                 "Haut-5mm",
+                                 "Tête fémorale",
+                                 "vessie - PTV",
+                                 "corps étranger",
+                                 "anneau rectum",
+                                 "Rectosigmoide",
+                                 "col vésical",
+                                 "bulbe pénien",
+                                 "recto anterior",
+                                 "vejiga-PTV",
+                                 "cuello vesical",
+                                 "前列腺床",
+                                 "前列腺PTV",
+                                 "膀胱颈",
+                                 "直肠外扩",
+                                 "直腸-PTV",
+                                 "精管",
+                                 "Простата+5мм",
+                                 "ПЖ",
+                                 "прямая кишка минус PTV",
+                                 "шейка пузыря",
+                                 "головка полового члена",
+                                 "SB",
+                                 "Femoral head left + right"}) {
+    EXPECT_EQ(canonical_region(name), "") << name;
+  }
+}
+
 TEST(TargetRegion, gland_and_zones_and_planning_volumes_are_targets_and_organs_are_not) {
   for (const std::string name : {"prostate", "peripheral_zone", "transition_zone", "ctv", "target", "ptv", "gtv"}) {
     EXPECT_TRUE(is_target_region(name)) << name;

@@ -8,9 +8,13 @@
 
 namespace stylet {
 
+/// A name in UTF-8 as names are compared: letters without accents (ä → a, ß → ss), Cyrillic in lower case (ё → е),
+/// letters of Chinese width as ASCII, blanks and dashes of any kind as blanks. ASCII keeps its case.
+std::string folded(std::string_view name);
+
 /// Finds the names that a user's word refers to.
 /// @return positions in `names` of all names equal to `word`; if there is none, of all names that differ from it only
-///   in upper and lower case or in surrounding blanks; empty for an empty word or a word of blanks
+///   in upper and lower case, in accents or in surrounding blanks; empty for an empty word or a word of blanks
 std::vector<std::size_t> find_named(std::span<const std::string> names, std::string_view word);
 
 /// Whether one of the words equals this name, apart from upper and lower case and surrounding blanks. A name of blanks
