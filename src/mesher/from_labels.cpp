@@ -217,6 +217,10 @@ Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, 
     structure.shape = std::move(shape);
     members.push_back(std::move(structure));
   }
+  if (members.empty()) {
+    return input_error(anatomy.source, "no region is thicker than a voxel, so there is nothing to mesh",
+                       "Fill the slices between those that are drawn, or export the mask with finer voxels");
+  }
   const auto solid = interpolate_fields(fields_of(image, s, [&](int l) { return organs.contains(l); }), step, sigma);
   drop_unclaimed_islands(*solid, members);
   anatomy.add(solid, std::move(members));

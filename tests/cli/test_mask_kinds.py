@@ -33,6 +33,9 @@ class MaskKinds(InFolder):
         self.check("k05_every_second_slice.dcm", {1: (2452, 13.241)}, ["6 of 13 slices of 3 mm"])
         self.check("k05_two_distant_frames.dcm", {1: (946, 5.108)}, ["slices 2 to 4"])
 
+    def test_plates_of_one_slice_are_not_meshed(self):
+        self.refuse("mesh", DATA / "k05_two_distant_frames.dcm", "-o", "m.vtu", says=["thicker than a voxel", "slices"])
+
     def test_each_volume_of_an_old_slicer_is_a_segment(self):
         info = self.check("k06_slicer_4.10.seg.nrrd", self.GLAND_AND_URETHRA, ["share 70 voxels"])
         self.assertEqual([label["name"] for label in info["labels"]], ["Prostate", "Urethra"])
