@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <memory>
@@ -36,12 +38,63 @@ bool at(const std::string& bytes, std::size_t position, std::string_view mark) {
   return bytes.size() >= position + mark.size() && std::string_view(bytes).substr(position, mark.size()) == mark;
 }
 
-bool is_dicom(const std::string& bytes) {
-  using namespace std::string_view_literals;
-  // DICOM: a preamble of 128 bytes, or a bare data set that begins with group 0002 or 0008 in little endian.
-  return at(bytes, 128, "DICM") || at(bytes, 0, "\x08\0\x05\0"sv) || at(bytes, 0, "\x08\0\x08\0"sv) ||
-         at(bytes, 0, "\x08\0\x16\0"sv) || at(bytes, 0, "\x02\0\0\0"sv);
+std::uint32_t little_endian(std::string_view bytes) {
+  std::uint32_t value = 0;
+  for (std::size_t i = bytes.size(); i-- > 0;) value = value << 8U | static_cast<unsigned char>(bytes[i]);
+  return value;
 }
+
+/// The header of an element of a DICOM data set in little endian.
+struct ElementHeader {
+  std::uint32_t tag = 0;
+  std::uint32_t length = 0;  ///< of the value; 0xFFFFFFFF: a sequence that a delimiter ends
+  std::size_t size = 0;      ///< of the header; 0: these bytes are none
+};
+
+/// Reads a header with explicit or implicit type of value (VR), DICOM PS3.5 7.1.
+ElementHeader element_header(std::string_view bytes) {
+  if (bytes.size() < 12) return {};
+  const std::uint32_t tag = little_endian(bytes.substr(0, 2)) << 16U | little_endian(bytes.substr(2, 2));
+  const std::string_view type = bytes.substr(4, 2);
+  constexpr std::string_view short_types = "AE AS AT CS DA DS DT FD FL IS LO LT PN SH SL SS ST TM UI UL US";
+  constexpr std::string_view long_types = "OB OD OF OL OV OW SQ SV UC UN UR UT UV";
+  const bool word = type[0] >= 'A' && type[1] >= 'A';  // so that no blank of a list is part of it
+  if (word && short_types.find(type) != std::string_view::npos) return {tag, little_endian(bytes.substr(6, 2)), 8};
+  if (word && long_types.find(type) != std::string_view::npos) return {tag, little_endian(bytes.substr(8, 4)), 12};
+  return {tag, little_endian(bytes.substr(4, 4)), 8};
+}
+
+/// Whether bytes are the beginning of a DICOM data set in little endian without preamble: elements in ascending order
+/// from group 0002 or 0008 on, one of which is a SOP class (0008,0016) or a modality (0008,0060).
+bool is_bare_dicom(std::string_view bytes) {
+  constexpr std::uint32_t sop_class = 0x00080016, modality = 0x00080060;
+  if (bytes.size() < 12) return false;
+  const std::uint32_t group = little_endian(bytes.substr(0, 2));
+  if (group != 0x0002 && group != 0x0008) return false;
+  for (std::int64_t before = -1;;) {
+    const ElementHeader element = element_header(bytes);
+    if (element.size == 0 || element.tag <= before || element.tag > modality) return false;
+    before = element.tag;
+    bytes.remove_prefix(element.size);
+    std::size_t length = element.length;
+    if (element.length == 0xFFFFFFFF) {
+      constexpr std::string_view delimiter("\xFE\xFF\xDD\xE0\0\0\0\0", 8);
+      const auto end = bytes.find(delimiter);
+      if (end == std::string_view::npos) return false;
+      length = end + delimiter.size();
+    }
+    if (length % 2 != 0 || length > bytes.size()) return false;
+    const std::string_view value = bytes.substr(0, length);
+    if (element.tag == sop_class && value.starts_with("1.2.840.10008.")) return true;
+    if (element.tag == modality) {
+      return !value.empty() && std::all_of(value.begin(), value.end(),
+                                           [](char c) { return (c >= 'A' && c <= 'Z') || c == ' ' || c == '\0'; });
+    }
+    bytes.remove_prefix(length);
+  }
+}
+
+bool is_dicom(const std::string& bytes) { return at(bytes, 128, "DICM") || is_bare_dicom(bytes); }
 
 /// Whether a gzip file is too damaged to read its first bytes.
 bool is_damaged_gzip(const fs::path& path, const std::string& unpacked) {
