@@ -16,6 +16,7 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cmath>
 
 namespace stylet::cli {
@@ -25,11 +26,11 @@ namespace {
 namespace fs = std::filesystem;
 
 struct DoseArguments {
-  std::string plan, structures, patient_from, source, output, formalism, quantity, compare, points, goals;
+  std::string plan, structures, patient_from, output, formalism, quantity, compare, points, goals;
   std::vector<double> compare_shift_mm;
-  std::vector<std::string> regions, skip;
+  std::vector<std::string> sources, regions, skip;
   double phi_an = 0, prescription_Gy = 0, days = 0, decay_days = 0, grid_mm = 1, step_mm = 0;
-  bool ignore_frame = false;
+  bool ignore_frame = false, compare_anyway = false;
 };
 
 Result<DoseOptions> options_of(const DoseArguments& arguments, const DosePlan& plan) {
@@ -46,6 +47,7 @@ Result<DoseOptions> options_of(const DoseArguments& arguments, const DosePlan& p
                        "Leave out --days and --quantity");
   options.days = arguments.days;
   options.decay_days = arguments.decay_days;
+  options.compare_anyway = arguments.compare_anyway;
   options.prescription_Gy = arguments.prescription_Gy;
   options.grid_step_mm = arguments.grid_mm;
   if (!arguments.points.empty()) {
@@ -64,16 +66,18 @@ Result<DoseOptions> options_of(const DoseArguments& arguments, const DosePlan& p
   return options;
 }
 
-/// The source model of the plan, with the constant anisotropy that the user may give.
-Result<SourceModel> source_of(const DoseArguments& arguments, const DosePlan& plan) {
-  Result<SourceModel> source = choose_source(arguments.source, plan);
-  if (!source || arguments.phi_an <= 0) return source;
+/// The source models of the plan, with the constant anisotropy that the user may give.
+Result<std::vector<SourceModel>> sources_of(const DoseArguments& arguments, const DosePlan& plan) {
+  Result<std::vector<SourceModel>> sources = choose_sources(arguments.sources, plan);
+  if (!sources || arguments.phi_an <= 0) return sources;
   if (arguments.formalism.empty() || arguments.formalism == "line2d")
     return input_error("--phi-an", "the formalism line2d has no 1D anisotropy",
                        "Add --formalism line1d or --formalism point, or leave --phi-an out");
-  source->phi_r_mm = {Tg43::kReference_mm};
-  source->phi = {arguments.phi_an};
-  return source;
+  for (SourceModel& source : *sources) {
+    source.phi_r_mm = {Tg43::kReference_mm};
+    source.phi = {arguments.phi_an};
+  }
+  return sources;
 }
 
 /// @param own_goals whether the program's own goals are judged, which are those of prostate implants: only then does it
@@ -112,13 +116,22 @@ Result<DoseStructures> structures_of(const DoseArguments& arguments, const DoseP
   return structures;
 }
 
+/// The date of the computation, YYYYMMDD.
+std::string today() {
+  const std::chrono::year_month_day date{std::chrono::floor<std::chrono::days>(std::chrono::system_clock::now())};
+  return fmt::format("{:04}{:02}{:02}", static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
+                     static_cast<unsigned>(date.day()));
+}
+
 std::string value_text(double value, int digits) {
   return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
 }
 
 std::string figures_text(const DoseEvaluation& e) {
-  Table table({"structure", "taken as", "volume [cc]", "D90 [Gy]", "D30 [Gy]", "D10 [Gy]", "D2cc [Gy]", "D0.1cc [Gy]",
-               "V100 [%]", "V150 [%]", "V200 [%]"});
+  const bool is_rate = e.quantity.find("rate") != std::string::npos;
+  const auto figure = [&](const char* name) { return fmt::format("{} [{}]", name, is_rate ? "Gy/h" : "Gy"); };
+  Table table({"structure", "taken as", "volume [cc]", figure("D90"), figure("D30"), figure("D10"), figure("D2cc"),
+               figure("D0.1cc"), "V100 [%]", "V150 [%]", "V200 [%]"});
   const double p = e.prescription_Gy;
   for (const StructureDose& s : e.structures) {
     const auto volume = [&](double share) { return p > 0 ? value_text(s.dvh.percent_above(share * p), 1) : "-"; };
@@ -150,8 +163,10 @@ void print(const DoseEvaluation& e, Console& console) {
   const bool temporary = e.plan.implant == Implant::temporary;
   console.say(fmt::format("{}: {} {}, {}", e.plan.file, e.plan.sources.size(), temporary ? "dwell positions" : "seeds",
                           temporary ? fmt::format("{:.1f} s in all", time) : fmt::format("{:.3f} U in all", strength)));
+  std::string models = e.source.name;
+  for (const SourceModel& more : e.more_sources) models += ", " + more.name;
   console.say(fmt::format(
-      "Source {}, formalism {}, {}; {}", e.source.name, to_string(e.formalism),
+      "Source {}, formalism {}, {}; {}", models, to_string(e.formalism),
       e.prescription_Gy > 0 ? fmt::format("prescription {:g} Gy", e.prescription_Gy) : std::string("no prescription"),
       e.quantity));
   console.say(patient_sentence(e.patient));
@@ -168,12 +183,14 @@ void print(const DoseEvaluation& e, Console& console) {
 
 Result<> run_dose(const DoseArguments& arguments, Console& console) {
   if (Result<> writable = check_output_folder(arguments.output); !writable) return writable;
-  const Result<DosePlan> plan = read_plan(arguments.plan);
+  Result<DosePlan> plan = read_plan(arguments.plan);
   if (!plan) return plan.error();
-  const Result<SourceModel> source = source_of(arguments, *plan);
-  if (!source) return source.error();
-  const Result<DoseOptions> options = options_of(arguments, *plan);
+  plan->says.today = today();
+  const Result<std::vector<SourceModel>> sources = sources_of(arguments, *plan);
+  if (!sources) return sources.error();
+  Result<DoseOptions> options = options_of(arguments, *plan);
   if (!options) return options.error();
+  options->more_sources.assign(sources->begin() + 1, sources->end());
   const Result<DoseStructures> structures =
       structures_of(arguments, *plan, arguments.goals.empty() && plan->implant == Implant::permanent, console);
   if (!structures) return structures.error();
@@ -184,7 +201,8 @@ Result<> run_dose(const DoseArguments& arguments, Console& console) {
                                                    frame,
                                                    arguments.ignore_frame});
   if (!patient) return patient.error();
-  Result<DoseEvaluation> e = evaluate_dose(*plan, *source, structures->structures, *options, console.progress());
+  Result<DoseEvaluation> e =
+      evaluate_dose(*plan, sources->front(), structures->structures, *options, console.progress());
   if (!e) return e.error();
   e->warnings.insert(e->warnings.end(), structures->notes.begin(), structures->notes.end());
   e->warnings.insert(e->warnings.end(), plan->notes.begin(), plan->notes.end());
@@ -231,9 +249,12 @@ Command add_dose_command(CLI::App& program) {
                   "DICOM file whose patient, study, frame of reference and structure set plan.dcm and dose.dcm get "
                   "(default: those of plan and structures, where they agree)")
       ->type_name("FILE");
-  app->add_option("--source", arguments->source,
-                  "Source model: a name such as i125_6711, or a JSON file with TG-43 data; no DICOM plan names it")
-      ->type_name("NAME|FILE");
+  app->add_option("--source", arguments->sources,
+                  "Source model: a name such as i125_6711, or a JSON file with TG-43 data; no DICOM plan names it. For "
+                  "one of several kinds of source ID=NAME, with its number in the plan or its isotope; may be repeated")
+      ->type_name("[ID=]NAME|FILE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app->add_option("-o,--output", arguments->output,
                   "Folder for report.html, dose.json, dvh.csv, dose.nrrd, plan.dcm and dose.dcm")
       ->type_name("OUT")
@@ -266,6 +287,9 @@ Command add_dose_command(CLI::App& program) {
                   "Move the compared grid by this many mm along x, y and z (LPS)")
       ->type_name("X Y Z")
       ->expected(3);
+  app->add_flag("--compare-anyway", arguments->compare_anyway,
+                "Compare with a dose grid that says that it is of another plan or frame of reference, or no physical "
+                "dose of a whole plan, or whose doses differ by more than a factor of five");
   app->add_option("--points", arguments->points, "CSV with the columns x_mm, y_mm, z_mm: points whose dose is computed")
       ->type_name("FILE");
   app->add_option("--goals", arguments->goals,

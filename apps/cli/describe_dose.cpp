@@ -5,6 +5,7 @@
 
 #include "stylet/dose/fitting_sources.hpp"
 #include "stylet/dose/known_sources.hpp"
+#include "stylet/dose/plan_rules.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -21,9 +22,26 @@ std::string with_notes(std::string text, const std::vector<std::string>& notes) 
   return text;
 }
 
+/// What the rules for plans say without structures, by the models that the plan names or that fit.
+std::vector<std::string> doubts_of(const DosePlan& plan) {
+  std::vector<SourceModel> models;
+  for (std::size_t kind = 0; kind < kind_count(plan); ++kind) {
+    const SourceKind says = source_kind(plan, kind);
+    const Result<SourceModel> named = find_source(says.source_model);
+    const std::vector<SourceModel> fits = fitting_sources(says);
+    if (!named && fits.empty()) return {};
+    models.push_back(named ? *named : fits.front());
+  }
+  const Result<std::vector<std::string>> judged = judge_plan(plan, models, {}, {});
+  return judged ? *judged : std::vector<std::string>{"stylet dose refuses this plan: " + judged.error().message()};
+}
+
 }  // namespace
 
 Description describe(const DosePlan& plan) {
+  std::vector<std::string> notes = plan.notes;
+  const std::vector<std::string> doubts = doubts_of(plan);
+  notes.insert(notes.end(), doubts.begin(), doubts.end());
   Eigen::AlignedBox3d box;
   double strength_U = 0.0, dwell_s = 0.0;
   std::size_t turned = 0;
@@ -80,8 +98,8 @@ Description describe(const DosePlan& plan) {
               {"prescription_Gy", plan.prescription_Gy > 0 ? Json(plan.prescription_Gy) : Json(nullptr)},
               {"extent_mm", extent_json(box)},
               {"frame_of_reference", plan.frame_of_reference},
-              {"notes", plan.notes}};
-  out.text = with_notes(facts.text(), plan.notes);
+              {"notes", notes}};
+  out.text = with_notes(facts.text(), notes);
   return out;
 }
 

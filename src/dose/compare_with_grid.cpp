@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dose/covered_percent.hpp"
+#include "dose/grid_of_plan.hpp"
 #include "stylet/dose/evaluate.hpp"
 #include "stylet/dose/rate_table.hpp"
 
@@ -56,15 +57,7 @@ void drop_strange_ends(std::vector<double>& ratio, std::vector<Index>& frames, c
 Result<> compare_with_grid(DoseEvaluation& e, const DoseGrid& grid, std::span<const DoseStructure> structures,
                            const DoseOptions& options, const Vec3& shift_mm) {
   constexpr double near_mm = 4.0, least_share = 0.1, least_steps = 50.0;
-  if (!grid.frame_of_reference.empty() && !e.plan.frame_of_reference.empty() &&
-      grid.frame_of_reference != e.plan.frame_of_reference) {
-    return input_error(grid.file, "the dose grid has another frame of reference than the plan",
-                       "Give the dose grid that belongs to this plan");
-  }
-  const Result<Tg43> tg43 = Tg43::create(e.source, e.formalism);
-  if (!tg43) return tg43.error();
-  const RateTable table(*tg43);
-  const WeightedSources weighted = weighted_sources(e.plan, e.source, options);
+  if (Result<> belongs = dose::check_belongs(e, grid, structures, options, shift_mm); !belongs) return belongs;
   double least = least_share * e.prescription_Gy;
   if (least <= 0.0) {
     std::vector<double> doses;
@@ -73,6 +66,9 @@ Result<> compare_with_grid(DoseEvaluation& e, const DoseGrid& grid, std::span<co
   }
   least = std::max(least, least_steps * grid.quantum_Gy);
   const double most = grid.largest_Gy > 0.0 ? grid.largest_Gy * (1.0 - 1e-6) : INFINITY;
+  const auto gives_dose = [&](const PlannedSource& s) {
+    return s.strength_U > 0.0 && (e.plan.implant == Implant::permanent || s.dwell_s > 0.0);
+  };
   std::vector<Vec3> points;
   std::vector<double> theirs;
   std::vector<Index> frames;
@@ -83,8 +79,8 @@ Result<> compare_with_grid(DoseEvaluation& e, const DoseGrid& grid, std::span<co
         const auto dose = static_cast<double>(grid.dose_Gy[n]);
         if (dose < least || dose <= 0.0 || dose >= most) continue;
         const Vec3 x = grid.point(i, j, k) + shift_mm;
-        const bool near = std::any_of(weighted.sources.begin(), weighted.sources.end(), [&](const PlacedSource& s) {
-          return (x - s.at_mm).squaredNorm() < near_mm * near_mm;
+        const bool near = std::any_of(e.plan.sources.begin(), e.plan.sources.end(), [&](const PlannedSource& s) {
+          return gives_dose(s) && (x - s.at_mm).squaredNorm() < near_mm * near_mm;
         });
         if (near) continue;
         points.push_back(x);
@@ -98,14 +94,16 @@ Result<> compare_with_grid(DoseEvaluation& e, const DoseGrid& grid, std::span<co
                        "no point of the dose grid can be compared: all lie near a source or have hardly any dose",
                        "Give the dose grid that belongs to this plan");
   }
-  std::vector<double> ratio(points.size());
-  sum_rates(table, weighted.sources, points, ratio);
-  for (std::size_t p = 0; p < ratio.size(); ++p) ratio[p] *= weighted.factor / theirs[p];
+  Result<std::vector<double>> ours = doses_at(e, options, points);
+  if (!ours) return ours.error();
+  std::vector<double> ratio = *std::move(ours);
+  for (std::size_t p = 0; p < ratio.size(); ++p) ratio[p] /= theirs[p];
   drop_strange_ends(ratio, frames, grid, e.warnings);
   std::sort(ratio.begin(), ratio.end());
   const auto at = [&](double share) {
     return ratio[static_cast<std::size_t>(share * static_cast<double>(ratio.size() - 1))];
   };
+  if (Result<> alike = dose::check_ratio(e, grid, at(0.5), options); !alike) return alike;
   e.comparison = DoseComparison{grid.file, ratio.size(), at(0.5), at(0.01), at(0.99)};
   if (std::abs(at(0.5) - 1.0) > 0.02) {
     e.warnings.push_back(fmt::format(

@@ -2,9 +2,9 @@
 #include "stylet/dose/evaluate.hpp"
 
 #include "dose/covered_percent.hpp"
+#include "dose/summed_dose.hpp"
 
-#include "stylet/dose/fitting_sources.hpp"
-#include "stylet/dose/rate_table.hpp"
+#include "stylet/dose/plan_rules.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -18,11 +18,9 @@ namespace stylet {
 
 namespace {
 
-constexpr double kGy_per_cGy = 0.01;
 constexpr double kGridMargin_mm = 10.0;
 constexpr double kMostGridPoints = 4e6;
-constexpr double kNearStructures_mm = 30.0;  // sources further than this from all structures belong to another patient
-constexpr std::size_t kCloud = 4000;         // samples of a structure that are kept to draw it
+constexpr std::size_t kCloud = 4000;  // samples of a structure that are kept to draw it
 
 Result<> check_positive(double value, const char* what, const std::string& where, const char* cure) {
   if (std::isfinite(value) && value > 0.0) return Ok{};
@@ -73,19 +71,6 @@ std::string words_of(const DosePlan& plan, const DoseOptions& options) {
   return "";
 }
 
-/// Smallest distance of a source from a sample of any structure, looked at every so many samples.
-double distance_to_structures(const DosePlan& plan, std::span<const DoseStructure> structures) {
-  double nearest = INFINITY;
-  for (const DoseStructure& structure : structures) {
-    const std::vector<Vec3>& points = structure.samples.points;
-    const std::size_t stride = std::max<std::size_t>(1, points.size() / 2000);
-    for (std::size_t p = 0; p < points.size(); p += stride) {
-      for (const PlannedSource& source : plan.sources) nearest = std::min(nearest, (points[p] - source.at_mm).norm());
-    }
-  }
-  return nearest;
-}
-
 Eigen::AlignedBox3d box_of(const std::vector<Vec3>& points) {
   Eigen::AlignedBox3d box;
   for (const Vec3& x : points) box.extend(x);
@@ -112,76 +97,7 @@ DoseGrid empty_grid(const DosePlan& plan, std::span<const DoseStructure> structu
   return grid;
 }
 
-/// The parts of an implant's time as stretches of all distances; one without stretch where the swelling differs from
-/// axis to axis.
-std::vector<Stretch> stretches_of(const std::vector<SwollenTime>& times, bool alike) {
-  if (!alike) return {Stretch{}};
-  std::vector<Stretch> stretches;
-  stretches.reserve(times.size());
-  for (const SwollenTime& time : times) stretches.push_back({time.share, time.factors.x()});
-  return stretches;
-}
-
-/// The dose over all parts of an implant's time. Swelling that is the same in all directions only makes distances
-/// longer, so one table of the mean rate serves for all parts; otherwise the seeds are summed for each part.
-class Dose {
- public:
-  Dose(const Tg43& tg43, const DosePlan& plan, const SourceModel& source, const DoseOptions& options)
-      : tg43_(tg43),
-        swelling_(options.swelling),
-        weighted_(weighted_sources(plan, source, options)),
-        times_(times(plan, source, options)),
-        alike_((swelling_.at_start.array() == swelling_.at_start.x()).all()),
-        table_(tg43, stretches_of(times_, alike_)) {}
-
-  /// Dose [Gy] at points by the formula itself, summed over all seeds for each part of the time.
-  [[nodiscard]] std::vector<double> by_formula(const std::vector<Vec3>& points) const {
-    return by_parts(points, tg43_);
-  }
-  /// The same by the table.
-  [[nodiscard]] std::vector<double> by_table(const std::vector<Vec3>& points) const {
-    if (!alike_) return by_parts(points, table_);
-    std::vector<double> dose(points.size());
-    sum_rates(table_, weighted_.sources, points, dose);
-    for (double& value : dose) value *= weighted_.factor;
-    return dose;
-  }
-
- private:
-  static std::vector<SwollenTime> times(const DosePlan& plan, const SourceModel& source, const DoseOptions& options) {
-    if (plan.implant == Implant::temporary || !options.swelling.is_any()) return {SwollenTime{}};
-    if (options.quantity == DoseQuantity::initial_rate) return {{1.0, options.swelling.factors(0.0)}};
-    return swollen_times(options.swelling, source.half_life_days,
-                         options.quantity == DoseQuantity::until ? options.days : INFINITY);
-  }
-
-  /// @param rates Tg43 or RateTable
-  template <class Rates>
-  [[nodiscard]] std::vector<double> by_parts(const std::vector<Vec3>& points, const Rates& rates) const {
-    std::vector<double> dose(points.size(), 0.0), of_part(points.size());
-    std::vector<Vec3> moved = points;
-    std::vector<PlacedSource> sources = weighted_.sources;
-    for (const SwollenTime& time : times_) {
-      for (std::size_t p = 0; p < points.size(); ++p) moved[p] = swelling_.moved(points[p], time.factors);
-      for (std::size_t k = 0; k < sources.size(); ++k) {
-        sources[k].at_mm = swelling_.moved(weighted_.sources[k].at_mm, time.factors);
-        sources[k].axis = time.factors.cwiseProduct(weighted_.sources[k].axis).normalized();
-      }
-      sum_rates(rates, sources, moved, of_part);
-      for (std::size_t p = 0; p < points.size(); ++p) dose[p] += time.share * weighted_.factor * of_part[p];
-    }
-    return dose;
-  }
-
-  const Tg43& tg43_;
-  Swelling swelling_;
-  WeightedSources weighted_;
-  std::vector<SwollenTime> times_;
-  bool alike_;  ///< whether the swelling is the same in all directions
-  RateTable table_;
-};
-
-void fill(DoseGrid& grid, const Dose& dose, const Progress& progress) {
+void fill(DoseGrid& grid, const dose::SummedDose& dose, const Progress& progress) {
   const auto layer = static_cast<std::size_t>(grid.size[0]) * static_cast<std::size_t>(grid.size[1]);
   grid.dose_Gy.resize(layer * static_cast<std::size_t>(grid.size[2]));
   std::vector<Vec3> points(layer);
@@ -204,7 +120,9 @@ std::vector<Vec3> cloud_of(const StructureSamples& samples) {
   return cloud;
 }
 
-Result<std::vector<JudgedGoal>> judge(const DoseEvaluation& evaluation, const std::vector<DoseGoal>& goals) {
+/// @param are_doses whether the figures are doses, and not dose rates, which no goal judges
+Result<std::vector<JudgedGoal>> judge(const DoseEvaluation& evaluation, const std::vector<DoseGoal>& goals,
+                                      bool are_doses) {
   std::vector<JudgedGoal> judged;
   for (const DoseGoal& goal : goals) {
     const Result<DoseMetric> metric = parse_metric(goal.metric, "goal for " + goal.structure);
@@ -213,7 +131,7 @@ Result<std::vector<JudgedGoal>> judge(const DoseEvaluation& evaluation, const st
     const auto structure =
         std::find_if(evaluation.structures.begin(), evaluation.structures.end(),
                      [&](const StructureDose& s) { return s.region == goal.structure || s.name == goal.structure; });
-    if (structure != evaluation.structures.end())
+    if (structure != evaluation.structures.end() && are_doses)
       row.value = figure_of(*metric, structure->dvh, evaluation.prescription_Gy);
     if (row.value) row.met = meets(goal, *row.value);
     judged.push_back(row);
@@ -222,7 +140,16 @@ Result<std::vector<JudgedGoal>> judge(const DoseEvaluation& evaluation, const st
 }
 
 void assume(DoseEvaluation& e, const DoseOptions& options) {
-  e.assumptions.push_back(fmt::format("Source model: {} ({}); {}.", e.source.name, e.source.title, e.source.citation));
+  const auto say_model = [&](const SourceModel& model, const std::string& of) {
+    e.assumptions.push_back(fmt::format("Source model{}: {} ({}); {}.", of, model.name, model.title, model.citation));
+  };
+  if (e.more_sources.empty()) {
+    say_model(e.source, "");
+  } else {
+    for (std::size_t kind = 0; kind < kind_count(e.plan); ++kind)
+      say_model(kind == 0 ? e.source : e.more_sources[kind - 1],
+                fmt::format(" of source '{}'", source_kind(e.plan, kind).id));
+  }
   const char* formalisms[] = {"line2d, a line source with the 2D anisotropy function",
                               "line1d, a line source with the 1D anisotropy function and no direction",
                               "point, a point source with the 1D anisotropy function and no direction"};
@@ -245,6 +172,18 @@ void assume(DoseEvaluation& e, const DoseOptions& options) {
             ? fmt::format("The strengths have decayed for {:g} days before the implantation.", options.decay_days)
             : "The strengths are taken as those at the implantation, without decay since their date.");
   }
+  if (e.plan.implant == Implant::temporary) {
+    e.assumptions.push_back(fmt::format(
+        "The strengths are {}; while a source lies it decays, and its mean strength counts.",
+        options.decay_days != 0.0 ? fmt::format("those of {:g} days before the implant begins", options.decay_days)
+                                  : std::string("those at the beginning of the implant")));
+  } else if (options.quantity == DoseQuantity::initial_rate) {
+    e.assumptions.emplace_back(
+        "Figures are dose rates, so none is given in per cent of the prescribed dose, and no goal is judged.");
+  } else if (options.quantity == DoseQuantity::until && !options.goals.empty()) {
+    e.assumptions.push_back(fmt::format(
+        "Goals are judged on the dose within {:g} days, not on that until the sources have decayed.", options.days));
+  }
   if (options.swelling.is_any()) {
     e.assumptions.push_back(fmt::format(
         "The gland swells by {:g}, {:g} and {:g} % (left, posterior, superior) and shrinks again with a "
@@ -262,46 +201,39 @@ void assume(DoseEvaluation& e, const DoseOptions& options) {
 
 const char* to_string(Implant implant) { return implant == Implant::permanent ? "permanent" : "temporary"; }
 
-WeightedSources weighted_sources(const DosePlan& plan, const SourceModel& source, const DoseOptions& options) {
-  WeightedSources out;
-  constexpr double seconds_per_hour = 3600.0;
-  const bool temporary = plan.implant == Implant::temporary;
-  for (const PlannedSource& s : plan.sources) {
-    const double weight = s.strength_U * (temporary ? s.dwell_s / seconds_per_hour : 1.0);
-    if (weight > 0.0) out.sources.push_back({s.at_mm, s.axis, weight});
-  }
-  out.factor = kGy_per_cGy;
-  if (!temporary && options.quantity != DoseQuantity::initial_rate)
-    out.factor = permanent_Gy_per_rate(source.half_life_days);
-  if (!temporary && options.quantity == DoseQuantity::until)
-    out.factor *= -std::expm1(-std::numbers::ln2 * options.days / source.half_life_days);
-  out.factor *= std::exp2(-options.decay_days / source.half_life_days);
-  return out;
-}
-
 Result<DoseEvaluation> evaluate_dose(const DosePlan& plan, const SourceModel& source,
                                      std::span<const DoseStructure> structures, const DoseOptions& options,
                                      const Progress& progress) {
   if (Result<> good = check_plan(plan, options); !good) return good.error();
-  Result<std::vector<std::string>> differences = compare_source(plan, source);
-  if (!differences) return differences.error();
-  const Result<Tg43> tg43 = Tg43::create(source, options.formalism);
-  if (!tg43) return tg43.error();
-  const double nearest = structures.empty() ? 0.0 : distance_to_structures(plan, structures);
-  if (nearest > kNearStructures_mm) {
-    return input_error(plan.file, fmt::format("the nearest source is {:.0f} mm away from all structures", nearest),
-                       "Give the structures of this plan's patient, in the same frame of reference");
-  }
+  std::vector<SourceModel> models{source};
+  models.insert(models.end(), options.more_sources.begin(), options.more_sources.end());
+  const Result<dose::SummedDose> summed = dose::SummedDose::create(plan, models, options);
+  if (!summed) return summed.error();
+  const dose::SummedDose& dose = *summed;
+  Result<std::vector<std::string>> doubts = std::vector<std::string>();
+  if (!options.judged) doubts = judge_plan(plan, models, structures, options);
+  if (!doubts) return doubts.error();
   DoseEvaluation e;
   e.plan = plan;
   e.source = source;
   e.strength = strength_age(plan, source.half_life_days, options.decay_days);
+  e.more_sources = options.more_sources;
+  for (std::size_t k = 0; k < e.more_sources.size(); ++k) {  // what was computed with, for writers
+    SourceKind& kind = e.plan.more_kinds[k];
+    const SourceModel& model = e.more_sources[k];
+    kind.source_model = model.name;
+    kind.isotope = model.isotope;
+    kind.half_life_days = model.half_life_days;
+    kind.source_length_mm = model.active_length_mm;
+  }
   e.formalism = options.formalism;
   e.quantity = words_of(plan, options);
   e.prescription_Gy = options.prescription_Gy > 0.0 ? options.prescription_Gy : plan.prescription_Gy;
-  e.warnings = std::move(*differences);
+  // A dose rate has no share of a prescribed dose, and no goal is about it.
+  const bool is_rate = options.quantity == DoseQuantity::initial_rate && plan.implant == Implant::permanent;
+  if (is_rate) e.prescription_Gy = 0.0;
+  e.warnings = std::move(*doubts);
 
-  const Dose dose(*tg43, plan, source, options);
   e.points = options.points;
   e.point_Gy = dose.by_formula(e.points);
   e.grid = empty_grid(plan, structures, options.grid_step_mm);
@@ -314,7 +246,17 @@ Result<DoseEvaluation> evaluate_dose(const DosePlan& plan, const SourceModel& so
                             cloud_of(structure.samples)});
     report(progress, "dose to structures", static_cast<double>(k + 1) / static_cast<double>(structures.size()));
   }
-  Result<std::vector<JudgedGoal>> goals = judge(e, options.goals);
+  if (!options.judged && options.quantity == DoseQuantity::total) {
+    const Result<std::vector<std::string>> of_dose = judge_dose(e);
+    if (!of_dose) {
+      Error error = of_dose.error();
+      for (const std::string& doubt : e.warnings) error.what += "; " + doubt;
+      if (error.what.ends_with('.')) error.what.pop_back();
+      return error;
+    }
+    e.warnings.insert(e.warnings.end(), of_dose->begin(), of_dose->end());
+  }
+  Result<std::vector<JudgedGoal>> goals = judge(e, options.goals, !is_rate);
   if (!goals) return goals.error();
   e.goals = std::move(*goals);
   assume(e, options);

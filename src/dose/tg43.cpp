@@ -87,6 +87,11 @@ Tg43::Tg43(SourceModel source, DoseFormalism formalism)
       formalism_(formalism),
       log_g_(source_.isotope != "Ir-192"),
       at_reference_(line_geometry(kReference_mm, 0.0, source_.active_length_mm)) {
+  // A source without a capsule gets one around its active part, so that its dose is finite, too.
+  const bool has_capsule = source_.outer_length_mm > source_.active_length_mm;
+  surface_.half_mm = has_capsule ? 0.5 * source_.outer_length_mm : 0.5 * source_.active_length_mm + kLeast_mm;
+  surface_.radius_mm = source_.outer_diameter_mm > 0.0 ? 0.5 * source_.outer_diameter_mm : kLeast_mm;
+  surface_.furthest_mm = std::hypot(surface_.half_mm, surface_.radius_mm);
   // g_P (r₀ / r)² = g_L G_L(r, 90°) / G_L(r₀, 90°): both describe the same doses on the transverse axis.
   for (std::size_t i = 0; i < source_.g.size(); ++i) {
     const double r = source_.g_r_mm[i];
@@ -143,8 +148,18 @@ double Tg43::anisotropy(double r, double theta_deg) const {
 
 double Tg43::mean_anisotropy(double r) const { return linear(source_.phi_r_mm, source_.phi, r); }
 
+double Tg43::radius_of_dose(double r, double cos_theta) const {
+  if (formalism_ == DoseFormalism::line2d && r < surface_.furthest_mm) {
+    const double along = r * std::abs(cos_theta);
+    const double across = r * std::sqrt(std::max(0.0, 1.0 - cos_theta * cos_theta));
+    const double out = std::max(along / surface_.half_mm, across / surface_.radius_mm);  // 1 on the surface
+    if (out < 1.0) r = out > 0.0 ? r / out : surface_.radius_mm;
+  }
+  return std::max(r, kLeast_mm);
+}
+
 double Tg43::rate(double r, double cos_theta) const {
-  r = std::max(r, kLeast_mm);
+  r = radius_of_dose(r, cos_theta);
   const double length = source_.active_length_mm;
   const auto line = [&](double cos_of_angle) {
     return source_.dose_rate_constant * radial(r) * line_geometry(r, cos_of_angle, length) / at_reference_;
@@ -169,6 +184,12 @@ double permanent_Gy_per_rate(double half_life_days) {
   constexpr double hours_per_day = 24.0;
   constexpr double Gy_per_cGy = 0.01;
   return half_life_days * hours_per_day / std::numbers::ln2 * Gy_per_cGy;
+}
+
+double mean_strength_while_decaying(double hours, double half_life_days) {
+  constexpr double hours_per_day = 24.0;
+  const double decays = std::numbers::ln2 * hours / (hours_per_day * half_life_days);  // λt
+  return decays > 0.0 ? -std::expm1(-decays) / decays : 1.0;
 }
 
 void sum_rates(const Tg43& tg43, std::span<const PlacedSource> sources, std::span<const Vec3> points,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/patient/implant_plan.hpp"
 
+#include "stylet/dose/plan_rules.hpp"
 #include "stylet/io/input.hpp"
 #include "stylet/io/scenario_plan.hpp"
 #include "stylet/patient/source_choice.hpp"
@@ -115,9 +116,14 @@ Result<ImplantPlan> read_implant_plan(const Scenario& scenario, const std::strin
   Result<DosePlan> plan = plan_of_scenario(scenario, where);
   if (!plan) return plan.error();
   out.plan = *std::move(plan);
-  Result<SourceModel> source = choose_source(scenario.plan.source, out.plan);
-  if (!source) return source.error();
-  out.source = *std::move(source);
+  if (kind_count(out.plan) > 1) {
+    return input_error(out.plan.file,
+                       fmt::format("the plan has {} kinds of source, one is expected", kind_count(out.plan)),
+                       "Simulate a plan with one kind of source; stylet dose computes plans with several");
+  }
+  const Result<std::vector<SourceModel>> models = choose_sources({scenario.plan.source}, out.plan);
+  if (!models) return models.error();
+  out.source = models->front();
   const bool temporary = out.plan.implant == Implant::temporary;
   if (temporary) {
     if (Result<> possible = check_temporary_scenario(scenario, where); !possible) return possible.error();
@@ -135,6 +141,11 @@ Result<ImplantPlan> read_implant_plan(const Scenario& scenario, const std::strin
   Result<DoseOptions> options = dose_options(scenario, out.structures, out.plan, where);
   if (!options) return options.error();
   out.options = *std::move(options);
+  // The plan is judged as it is written; where its seeds come to rest is a result, not a fault of the plan.
+  const Result<std::vector<std::string>> doubts = judge_plan(out.plan, *models, out.structures.structures, out.options);
+  if (!doubts) return doubts.error();
+  out.plan.notes.insert(out.plan.notes.end(), doubts->begin(), doubts->end());
+  out.options.judged = true;
   return out;
 }
 

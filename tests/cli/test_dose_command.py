@@ -108,7 +108,7 @@ class Dose(InFolder):
     def test_what_does_not_belong_together_is_refused(self):
         self.case()
         self.write("far.json", plan([(300, 0, 0)], source="i125_6711"))
-        self.refuse("dose", "far.json", "--structures", "rs.json", "-o", "new", says=["away from all structures"])
+        self.refuse("dose", "far.json", "--structures", "rs.json", "-o", "new", says=["away from the target", "other patient"])
         self.write("a.json", plan(GRID, source="i125_6711", frame_of_reference="1.2.3"))
         self.write("b.json", structures(ball(14, "Prostate"), frame="1.2.4"))
         self.refuse("dose", "a.json", "--structures", "b.json", "-o", "new", says=["frame of reference", "1.2.3", "1.2.4"])

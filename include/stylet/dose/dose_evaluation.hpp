@@ -60,9 +60,10 @@ struct DoseComparison {
 /// A plan with its dose: everything that report, JSON and tables of `stylet dose` say.
 struct DoseEvaluation {
   DosePlan plan;
-  PatientRecord patient;  ///< whose plan it is; evaluate_dose() leaves it empty
-  StrengthAge strength;   ///< date of the strengths beside that of the plan, with the decay between
-  SourceModel source;
+  PatientRecord patient;                  ///< whose plan it is; evaluate_dose() leaves it empty
+  StrengthAge strength;                   ///< date of the strengths beside that of the plan, with the decay between
+  SourceModel source;                     ///< of the plan's first kind of source
+  std::vector<SourceModel> more_sources;  ///< of its further kinds (DosePlan::more_kinds)
   DoseFormalism formalism = DoseFormalism::line2d;
   std::string quantity;          ///< "total dose", "initial dose rate …", what dose_Gy means
   double prescription_Gy = 0.0;  ///< 0: none is known

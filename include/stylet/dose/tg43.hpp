@@ -28,11 +28,13 @@ const char* to_string(DoseFormalism formalism);  ///< "line2d", "line1d", "point
 ///   - F: linearly in r and θ, constant outside; angles beyond 90° are folded back where the table ends there; where a
 ///     value is missing the one at the next larger radius stands in;
 ///   - φ_an: linearly in r, constant outside; without a table it is computed from F and G_L;
-///   - radii below kLeast_mm count as this radius.
+///   - radii below kLeast_mm count as this radius;
+///   - within the capsule (line2d) the dose is that at the capsule's surface in the same direction from the centre. In
+///     the centre itself the dose rate is that beside it. The other formalisms have no direction and only kLeast_mm.
 /// Immutable: any number of threads may use it.
 class Tg43 {
  public:
-  static constexpr double kLeast_mm = 0.5;       ///< no dose is defined within the capsule
+  static constexpr double kLeast_mm = 0.5;       ///< least radius at which the tables are read
   static constexpr double kReference_mm = 10.0;  ///< r₀, where Λ holds and g = 1
 
   /// Errors: those of check_source().
@@ -55,6 +57,8 @@ class Tg43 {
 
  private:
   Tg43(SourceModel source, DoseFormalism formalism);
+  /// The radius [mm] at which the dose of a place is computed: on the capsule's surface for places within it.
+  [[nodiscard]] double radius_of_dose(double r, double cos_theta) const;
   [[nodiscard]] double radial_of(const std::vector<double>& radii, const std::vector<double>& g, double r) const;
 
   SourceModel source_;
@@ -63,11 +67,19 @@ class Tg43 {
   std::vector<double> g_point_r_mm_;  ///< radii of g, from kLeast_mm on
   std::vector<double> g_point_;       ///< g_P at these radii
   double at_reference_;               ///< G_L(r₀, 90°)
+  struct Surface {
+    double half_mm = 0.0, radius_mm = 0.0;  ///< half of the length, radius
+    double furthest_mm = 0.0;               ///< from the centre to the rim
+  } surface_;                               ///< of the capsule
 };
 
 /// Dose [Gy] of a permanent implant, until the source has decayed, for each unit of dose rate at its start [cGy/h].
 /// @param half_life_days [d]
 [[nodiscard]] double permanent_Gy_per_rate(double half_life_days);
+
+/// Mean strength of a source while it lies, divided by its strength at the beginning: (1 − e^(−λt)) / (λt).
+/// @param hours t [h] ≥ 0 @param half_life_days ln 2 / λ [d]
+[[nodiscard]] double mean_strength_while_decaying(double hours, double half_life_days);
 
 /// A source at its place.
 struct PlacedSource {

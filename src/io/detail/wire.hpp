@@ -44,14 +44,28 @@ void fields(auto& wire, LabelImage& i) {
 }
 void fields(auto& wire, TetMesh& m) { wire(m.nodes, m.tets, m.tet_region, m.regions); }
 void fields(auto& wire, MeshWithNotes& m) { wire(m.mesh, m.notes); }
-void fields(auto& wire, PlannedSource& s) { wire(s.at_mm, s.axis, s.has_axis, s.strength_U, s.dwell_s, s.needle); }
+void fields(auto& wire, PlannedSource& s) {
+  wire(s.at_mm, s.axis, s.has_axis, s.strength_U, s.dwell_s, s.over_s, s.kind, s.needle);
+}
+void fields(auto& wire, SourceKind& k) {
+  wire(k.id, k.source_model, k.isotope, k.half_life_days, k.source_length_mm, k.source_diameter_mm, k.strength_date);
+}
+void fields(auto& wire, ChannelSays& c) {
+  wire(c.where, c.total_s, c.final_weight, c.weights, c.points, c.points_said, c.pulses, c.shielded);
+}
+void fields(auto& wire, PlanSays& s) {
+  wire(s.is_dicom, s.type, s.technique, s.today, s.fractions, s.prescriptions, s.setup_doses, s.total_kermas, s.unused,
+       s.channels, s.longest_channel_s, s.dwell_of_permanent_s, s.without_dwell_time, s.repeated, s.has_beams,
+       s.ignored);
+}
 void fields(auto& wire, DosePlan& p) {
-  wire(p.file, p.label, p.implant, p.frame_of_reference, p.source_model, p.isotope, p.half_life_days,
-       p.source_length_mm, p.source_diameter_mm, p.strength_date, p.plan_date, p.prescription_Gy, p.sources, p.notes);
+  wire(p.file, p.uid, p.label, p.implant, p.frame_of_reference, p.source_model, p.isotope, p.half_life_days,
+       p.source_length_mm, p.source_diameter_mm, p.strength_date, p.plan_date, p.prescription_Gy, p.source_id,
+       p.more_kinds, p.sources, p.says, p.notes);
 }
 void fields(auto& wire, DoseGrid& g) {
-  wire(g.file, g.frame_of_reference, g.size, g.origin_mm, g.spacing_mm, g.direction, g.dose_Gy, g.quantum_Gy,
-       g.largest_Gy, g.notes);
+  wire(g.file, g.frame_of_reference, g.plan_uid, g.type, g.summation, g.size, g.origin_mm, g.spacing_mm, g.direction,
+       g.dose_Gy, g.quantum_Gy, g.largest_Gy, g.notes);
 }
 void fields(auto& wire, FoundPatient& p) {
   wire(p.file, p.name, p.id, p.id_issuer, p.birth_date, p.sex, p.study_uid, p.study_date, p.study_time, p.study_id,

@@ -10,12 +10,31 @@
 
 namespace stylet::detail {
 
-namespace {
+namespace {}  // namespace
 
-constexpr double kStrongestSeed_U = 1000.0;  // seeds have 0.2 to 10 U; above this the number has another unit
-constexpr double kSamePoint_mm = 0.01;
-
-}  // namespace
+Result<std::size_t> PlanBuilder::kind_of(const std::string& model, const std::string& where) {
+  const bool is_first = plan.sources.empty() && plan.source_model.empty();
+  if (model.empty()) {
+    if (!named_by_seeds_) return std::size_t{0};
+    return input_error(where, "it names no source model, and others do",
+                       "Name the source of each seed, or one for all");
+  }
+  if (is_first) {
+    named_by_seeds_ = true;
+    plan.source_model = plan.source_id = model;
+  } else if (plan.source_model.empty()) {
+    return input_error(where, "it names a source model, and the ones before do not",
+                       "Name the source of each seed, or one for all");
+  }
+  for (std::size_t kind = 0; kind < kind_count(plan); ++kind) {
+    if (source_kind(plan, kind).source_model == model) return kind;
+  }
+  SourceKind kind;
+  kind.id = kind.source_model = model;
+  kind.strength_date = plan.strength_date;
+  plan.more_kinds.push_back(kind);
+  return plan.more_kinds.size();
+}
 
 Result<> PlanBuilder::add(PlannedSource source, const std::string& where) {
   if (!std::isfinite(source.strength_U) || source.strength_U <= 0.0) {
@@ -25,12 +44,6 @@ Result<> PlanBuilder::add(PlannedSource source, const std::string& where) {
             ? std::string("the air-kerma strength is missing")
             : fmt::format("the air-kerma strength is {} U, a number above 0 is expected", source.strength_U),
         "Give strength_U for each seed, or once for all");
-  }
-  if (plan.implant == Implant::permanent && source.strength_U > kStrongestSeed_U) {
-    return input_error(where,
-                       fmt::format("the air-kerma strength is {:g} U, at most {:g} U is expected of a seed",
-                                   source.strength_U, kStrongestSeed_U),
-                       "Give the strength in U = µGy m²/h, or write \"implant\": \"temporary\"");
   }
   if (!std::isfinite(source.dwell_s) || source.dwell_s < 0.0)
     return input_error(where, fmt::format("the dwell time is {} s", source.dwell_s), "Give 0 s or more");
@@ -86,18 +99,9 @@ Result<DosePlan> PlanBuilder::finish() {
     return input_error(fmt::format("{}, {}", plan.file, key), fmt::format("'{}' is no date of the calendar", *date),
                        "Write it as 2024-01-31, with a time as 2024-01-31 10:15");
   }
-  std::size_t twins = 0;
-  for (std::size_t a = 0; a < plan.sources.size(); ++a) {
-    for (std::size_t b = 0; b < a; ++b) {
-      if ((plan.sources[a].at_mm - plan.sources[b].at_mm).norm() < kSamePoint_mm) {
-        ++twins;
-        break;
-      }
-    }
-  }
-  if (twins > 0 && plan.implant == Implant::permanent) {
-    plan.notes.push_back(
-        fmt::format("{} seeds of {} stand at the place of another one; all are counted.", twins, plan.file));
+  if (plan.implant == Implant::permanent) {
+    plan.says.without_dwell_time = 0;
+    for (const PlannedSource& source : plan.sources) plan.says.dwell_of_permanent_s += source.dwell_s;
   }
   return std::move(plan);
 }

@@ -37,18 +37,25 @@ class PlanBuilder {
  public:
   explicit PlanBuilder(std::string file) { plan.file = std::move(file); }
 
-  /// Adds a seed or dwell position. Errors: a strength that is missing or not above 0, or so large that it must have
-  /// another unit; a dwell time below 0; a place out of reach; an axis without length.
+  /// Adds a seed or dwell position. Errors: a strength that is missing or not above 0; a dwell time below 0; a place
+  /// out of reach; an axis without length. Whether the numbers are plausible, plan_rules.hpp judges.
   /// @param where file and row, for messages
   Result<> add(PlannedSource source, const std::string& where);
 
   /// Adds the seeds of a needle. Errors: an unknown hole, a malformed train, the errors of add().
   Result<> add(const PlanNeedle& needle, const PlanTemplate& grid, const std::string& where);
 
-  /// The plan, if it has a source; notes seeds that stand at the same place.
+  /// The kind of source of a seed that names its model; the plan's first kind where it names none.
+  /// Errors: some seeds name a model and others do not, and the plan does not name one for all.
+  Result<std::size_t> kind_of(const std::string& model, const std::string& where);
+
+  /// The plan, if it has a source.
   Result<DosePlan> finish();
 
   DosePlan plan;
+
+ private:
+  bool named_by_seeds_ = false;
 };
 
 }  // namespace stylet::detail

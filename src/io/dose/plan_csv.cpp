@@ -3,10 +3,13 @@
 #include "detail/text.hpp"
 #include "dose/csv_table.hpp"
 #include "dose/plan_words.hpp"
+#include "stylet/core/nearest_name.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 
 namespace stylet::detail {
@@ -14,7 +17,12 @@ namespace stylet::detail {
 namespace {
 
 const std::vector<std::string> kPlanColumns{
-    "x_mm", "y_mm", "z_mm", "ax", "ay", "az", "strength_U", "needle", "dwell_s", "hole", "retraction_mm", "train"};
+    "x_mm",    "y_mm", "z_mm",          "ax",    "ay",    "az", "strength_U", "needle",
+    "dwell_s", "hole", "retraction_mm", "train", "source"};
+const std::vector<std::string> kPlanLines{
+    "label",          "source",           "frame_of_reference", "strength_date",      "plan_date",
+    "implant",        "prescription_Gy",  "strength_U",         "template_origin_mm", "pitch_mm",
+    "seed_length_mm", "spacer_length_mm", "tip_offset_mm"};
 
 /// The number of a line "# key: value"; `usual` where there is none.
 Result<double> key_number(const CsvTable& table, const std::string& key, double usual) {
@@ -29,6 +37,18 @@ Result<double> key_number(const CsvTable& table, const std::string& key, double 
 std::string key_text(const CsvTable& table, const std::string& key) {
   const auto found = table.keys.find(key);
   return found == table.keys.end() ? std::string() : found->second;
+}
+
+/// Whether a line "# key: value" that nothing reads looks as if it were meant to be read.
+bool is_meant_as_key(const std::string& key) {
+  static constexpr std::array<std::string_view, 10> words{"strength",  "activity", "unit", "isotope",  "half",
+                                                          "prescript", "fraction", "dose", "template", "dwell"};
+  if (std::find(kPlanLines.begin(), kPlanLines.end(), key) != kPlanLines.end()) return false;
+  std::string small;
+  for (const char c : key) small += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const bool is_word = key.find(' ') == std::string::npos;
+  return (is_word && (key.find('_') != std::string::npos || !nearest_name(key, kPlanLines).empty())) ||
+         std::any_of(words.begin(), words.end(), [&](std::string_view word) { return small.starts_with(word); });
 }
 
 /// Three numbers of a row. Error: one of them is not a finite number.
@@ -61,6 +81,10 @@ Result<> add_seed(const CsvTable& table, std::size_t row, double strength_U, Pla
     *value = *number;
   }
   seed.needle = table.text(row, "needle");
+  if (table.text(row, "dwell_s").empty()) ++builder.plan.says.without_dwell_time;
+  const Result<std::size_t> kind = builder.kind_of(table.text(row, "source"), table.where(row));
+  if (!kind) return kind.error();
+  seed.kind = *kind;
   return builder.add(seed, table.where(row));
 }
 
@@ -121,8 +145,12 @@ Result<DosePlan> parse_plan_csv(const std::filesystem::path& path) {
   plan.label = key_text(*table, "label");
   plan.source_model = key_text(*table, "source");
   plan.frame_of_reference = key_text(*table, "frame_of_reference");
+  plan.source_id = plan.source_model;
   plan.strength_date = key_text(*table, "strength_date");
   plan.plan_date = key_text(*table, "plan_date");
+  for (const auto& [key, value] : table->keys) {
+    if (is_meant_as_key(key)) plan.says.ignored.push_back(fmt::format("# {}: {}", key, value));
+  }
   if (table->keys.contains("implant")) {
     if (Result<> set = set_implant(key_text(*table, "implant"), table->file, plan); !set) return set.error();
   }

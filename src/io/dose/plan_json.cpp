@@ -22,7 +22,7 @@ using detail::PlanTemplate;
 const std::vector<std::string> kPlanKeys{"format",    "version",         "units",  "frame",      "frame_of_reference",
                                          "label",     "implant",         "source", "strength_U", "strength_date",
                                          "plan_date", "prescription_Gy", "seeds",  "template",   "needles"};
-const std::vector<std::string> kSeedKeys{"position_mm", "axis", "strength_U", "needle", "dwell_s"};
+const std::vector<std::string> kSeedKeys{"position_mm", "axis", "strength_U", "needle", "dwell_s", "source"};
 const std::vector<std::string> kTemplateKeys{"origin_mm",        "pitch_mm",     "columns",  "rows",
                                              "direction",        "left",         "anterior", "seed_length_mm",
                                              "spacer_length_mm", "tip_offset_mm"};
@@ -64,6 +64,7 @@ Result<> read_header(const JsonObject& object, PlanBuilder& builder, double& str
   if (units != "mm")
     return input_error(object.place("units"), fmt::format("the units are '{}', 'mm' is expected", units),
                        "Convert all coordinates to millimetres and write \"units\": \"mm\"");
+  plan.source_id = plan.source_model;
   if (frame != "LPS")
     return input_error(object.place("frame"), fmt::format("the frame is '{}', 'LPS' is expected", frame),
                        "Convert to DICOM patient coordinates (+x left, +y posterior, +z superior)");
@@ -75,12 +76,18 @@ Result<> read_seed(const JsonObject& object, double strength_U, PlanBuilder& bui
   if (!object.has("position_mm"))
     return input_error(object.where(), "the seed has no position_mm", "Give [x, y, z] in mm, LPS");
   PlannedSource seed;
+  std::string model;
   seed.strength_U = strength_U;
   seed.has_axis = object.has("axis");
   Result<> taken = all_of(object.take("position_mm", seed.at_mm), object.take("axis", seed.axis),
                           object.take("strength_U", seed.strength_U), object.take("needle", seed.needle),
-                          object.take("dwell_s", seed.dwell_s));
-  return taken ? builder.add(seed, object.where()) : taken;
+                          object.take("dwell_s", seed.dwell_s), object.take("source", model));
+  if (!taken) return taken;
+  const Result<std::size_t> kind = builder.kind_of(model, object.where());
+  if (!kind) return kind.error();
+  seed.kind = *kind;
+  if (!object.has("dwell_s")) ++builder.plan.says.without_dwell_time;
+  return builder.add(seed, object.where());
 }
 
 Result<> read_template(const JsonObject& object, PlanTemplate& grid) {
@@ -157,7 +164,7 @@ Result<> write_plan_json(const DosePlan& plan, const std::filesystem::path& path
   text("label", plan.label);
   text("frame_of_reference", plan.frame_of_reference);
   json["implant"] = to_string(plan.implant);
-  text("source", plan.source_model);
+  if (kind_count(plan) == 1) text("source", plan.source_model);
   text("strength_date", plan.strength_date);
   text("plan_date", plan.plan_date);
   if (plan.prescription_Gy > 0.0) json["prescription_Gy"] = plan.prescription_Gy;
@@ -166,6 +173,7 @@ Result<> write_plan_json(const DosePlan& plan, const std::filesystem::path& path
     if (s.has_axis) seed["axis"] = {s.axis.x(), s.axis.y(), s.axis.z()};
     if (!s.needle.empty()) seed["needle"] = s.needle;
     if (plan.implant == Implant::temporary) seed["dwell_s"] = s.dwell_s;
+    if (kind_count(plan) > 1) seed["source"] = source_kind(plan, s.kind).source_model;
     json["seeds"].push_back(seed);
   }
   return detail::write_whole(path, [&](const std::filesystem::path& temporary) -> Result<> {

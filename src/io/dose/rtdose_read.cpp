@@ -257,10 +257,10 @@ Result<DoseGrid> parse_rtdose(const fs::path& path) {
   grid.quantum_Gy = numbers->scaling_Gy;
   if (Result<> read = read_doses(data, *numbers, *order, grid); !read) return read.error();
   note_oddities(*numbers, *order, grid);
-  const std::string sum = text_of(data, DCM_DoseSummationType);
-  if (!sum.empty() && sum != "PLAN" && sum != "BRACHY") {
-    grid.notes.push_back(
-        fmt::format("{} holds the dose of '{}' (3004,000A), which may not be that of the whole plan.", file, sum));
+  grid.type = text_of(data, DCM_DoseType);
+  grid.summation = text_of(data, DCM_DoseSummationType);
+  for (DcmItem* plan : items_of(data, DCM_ReferencedRTPlanSequence)) {
+    if (grid.plan_uid.empty()) grid.plan_uid = text_of(*plan, DCM_ReferencedSOPInstanceUID);
   }
   return grid;
 }

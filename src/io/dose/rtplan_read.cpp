@@ -45,6 +45,7 @@ std::optional<Vec3> vector_of(DcmItem& item, const DcmTagKey& tag) {
 /// One item of the source sequence (300A,0210).
 struct PlanSource {
   std::string isotope, model, strength_text, date, units;
+  bool used = false;  // by a channel
   double half_life_days = 0.0, length_mm = 0.0, diameter_mm = 0.0;
 };
 
@@ -54,9 +55,12 @@ class RtplanReader {
   RtplanReader(DcmDataset& data, const std::string& file) : data_(data) { plan_.file = file; }
 
   Result<DosePlan> run() {
+    plan_.uid = text_of(data_, DCM_SOPInstanceUID);
     plan_.label = text_of(data_, DCM_RTPlanLabel);
     plan_.frame_of_reference = text_of(data_, DCM_FrameOfReferenceUID);
     plan_.plan_date = trimmed(text_of(data_, DCM_RTPlanDate) + " " + text_of(data_, DCM_RTPlanTime));
+    plan_.says.is_dicom = true;
+    plan_.says.has_beams = !items_of(data_, DCM_BeamSequence).empty();
     read_sources();
     const auto setups = items_of(data_, DCM_ApplicationSetupSequence);
     if (setups.empty()) {
@@ -92,6 +96,11 @@ class RtplanReader {
                       "channel.",
                       turned_by_channel_));
     }
+    for (const auto& [source_number, source] : sources_) {
+      const auto strength = to_number(source.strength_text);
+      if (!source.used && source.half_life_days > 0.0 && strength && *strength > 0.0)
+        plan_.says.unused.push_back(fmt::format("{} ({}, {:g} U)", source_number, source.isotope, *strength));
+    }
     read_prescription();
     return std::move(plan_);
   }
@@ -104,7 +113,8 @@ class RtplanReader {
       source.model = text_of(*item, DCM_SourceDescription);
       source.strength_text = text_of(*item, DCM_ReferenceAirKermaRate);
       source.units = text_of(*item, kSourceStrengthUnits);
-      source.half_life_days = number_of(*item, DCM_SourceIsotopeHalfLife).value_or(0.0);
+      const bool no_half_life = text_of(*item, DCM_SourceIsotopeHalfLife).empty();
+      source.half_life_days = number_of(*item, DCM_SourceIsotopeHalfLife).value_or(no_half_life ? 0.0 : -1.0);
       source.length_mm = number_of(*item, DCM_ActiveSourceLength).value_or(0.0);
       source.diameter_mm = number_of(*item, DCM_ActiveSourceDiameter).value_or(0.0);
       source.date = trimmed(text_of(*item, DCM_SourceStrengthReferenceDate) + " " +
@@ -116,8 +126,14 @@ class RtplanReader {
 
   /// Whether the seeds stay: the technique says it, or the type, or the times of the channels.
   Result<> choose_implant(const std::vector<DcmItem*>& setups) {
-    const std::string technique = text_of(data_, DCM_BrachyTreatmentTechnique);
-    const std::string type = text_of(data_, DCM_BrachyTreatmentType);
+    const std::string technique = plan_.says.technique = text_of(data_, DCM_BrachyTreatmentTechnique);
+    const std::string type = plan_.says.type = text_of(data_, DCM_BrachyTreatmentType);
+    double longest_s = 0.0;
+    for (DcmItem* setup : setups) {
+      for (DcmItem* channel : items_of(*setup, DCM_ChannelSequence))
+        longest_s = std::max(longest_s, number_of(*channel, DCM_ChannelTotalTime).value_or(0.0));
+    }
+    plan_.says.longest_channel_s = longest_s;
     if (technique == "PERMANENT") return Ok{};
     if (type == "HDR" || type == "PDR" || type == "MDR") {
       plan_.implant = Implant::temporary;
@@ -129,11 +145,6 @@ class RtplanReader {
             "the dose is that of all pulses together.");
       }
       return Ok{};
-    }
-    double longest_s = 0.0;
-    for (DcmItem* setup : setups) {
-      for (DcmItem* channel : items_of(*setup, DCM_ChannelSequence))
-        longest_s = std::max(longest_s, number_of(*channel, DCM_ChannelTotalTime).value_or(0.0));
     }
     double half_life = 0.0;
     for (const auto& [number, source] : sources_) half_life = std::max(half_life, source.half_life_days);
@@ -163,6 +174,8 @@ class RtplanReader {
   }
 
   Result<> read_setup(DcmItem& setup, int number) {
+    const double kerma = number_of(setup, DCM_TotalReferenceAirKerma).value_or(0.0);
+    if (kerma > 0.0) plan_.says.total_kermas.push_back(kerma);
     for (DcmItem* channel : items_of(setup, DCM_ChannelSequence)) {
       ++channels_;
       const std::string where = fmt::format("{}, application setup {}, channel {}", plan_.file, number,
@@ -192,7 +205,14 @@ class RtplanReader {
     std::vector<ControlPoint> points;
     for (DcmItem* item : items_of(channel, DCM_BrachyControlPointSequence)) {
       ControlPoint point;
-      point.weight = number_of(*item, DCM_CumulativeTimeWeight).value_or(0.0);
+      const auto weight = number_of(*item, DCM_CumulativeTimeWeight);
+      if (!weight && !text_of(*item, DCM_CumulativeTimeWeight).empty()) {
+        return input_error(fmt::format("{}, control point {}", where, points.size() + 1),
+                           fmt::format("its cumulative time weight (300A,02D6) is '{}', a number is expected",
+                                       text_of(*item, DCM_CumulativeTimeWeight)),
+                           kExportPlanAgain);
+      }
+      point.weight = weight.value_or(0.0);
       if (const auto at = vector_of(*item, DCM_ControlPoint3DPosition)) {
         point.at_mm = *at;
         point.has_place = true;
@@ -203,18 +223,20 @@ class RtplanReader {
       if (axis && axis->norm() > 1e-6) point.axis = axis->normalized();
       points.push_back(point);
     }
+    plan_.says.channels.push_back(says_of(channel, points, where));
     if (points.empty()) return Ok{};
     const bool seeds = plan_.implant == Implant::permanent;
     Result<std::vector<RestingPlace>> places = resting_places(points, seeds, where);
     if (!places) return places.error();
+    for (const RestingPlace& place : *places) plan_.says.channels.back().weights += place.weight;
     if (places->empty()) return Ok{};
     const auto number = source_number(channel, where);
     if (!number) return number.error();
-    const PlanSource& source = sources_.at(*number);
+    PlanSource& source = sources_.at(*number);
+    source.used = true;
     const Result<double> strength = strength_of(source, *number, where);
     if (!strength) return strength.error();
-    take_source(source, where);
-    double seconds_per_weight = 0.0;
+    double seconds_per_weight = 0.0, over_s = 0.0;
     if (!seeds) {
       const double total_s = number_of(channel, DCM_ChannelTotalTime).value_or(0.0);
       const double last = number_of(channel, DCM_FinalCumulativeTimeWeight).value_or(points.back().weight);
@@ -228,16 +250,15 @@ class RtplanReader {
       for (const RestingPlace& place : *places) weights += place.weight;
       const int pulses = pulsed_ ? std::max(1, integer_of(channel, DCM_NumberOfPulses).value_or(1)) : 1;
       seconds_per_weight = pulses * total_s / weights;
-      if (std::abs(weights / last - 1.0) > 0.005) {
-        plan_.notes.push_back(
-            fmt::format("{}: the weights of its places add up to {:g}, the final cumulative time weight is {:g}; the "
-                        "channel's time of "
-                        "{:g} s is divided by the sum of the weights.",
-                        where, weights, last, total_s));
-      }
+      over_s = pulses > 1 ? pulses * number_of(channel, DCM_PulseRepetitionInterval).value_or(0.0) : 0.0;
       turn_by_neighbours(*places, begins_at_tip(channel));
     }
-    add_places(*places, *strength, seconds_per_weight, needle_of(channel, places->size()));
+    PlannedSource common;
+    common.kind = kind_of(*number, source);
+    common.strength_U = *strength;
+    common.over_s = over_s;
+    common.needle = needle_of(channel, places->size());
+    add_places(*places, seconds_per_weight, common);
     return Ok{};
   }
 
@@ -253,21 +274,50 @@ class RtplanReader {
         kExportPlanAgain);
   }
 
-  /// Remembers what the plan says about the source that is used.
-  void take_source(const PlanSource& source, const std::string& where) {
+  /// Number of the kind of a source; sources that differ in their strength only are of one kind.
+  std::size_t kind_of(int number, const PlanSource& source) {
+    const auto [known, is_new] = kinds_.emplace(number, 0);
+    if (!is_new) return known->second;
+    SourceKind kind;
+    kind.id = std::to_string(number);
+    kind.isotope = source.isotope;
+    // Planning systems leave the model out or have names of their own; this program writes the name that it knows.
+    if (find_source(source.model).ok()) kind.source_model = source.model;
+    kind.half_life_days = source.half_life_days;
+    kind.source_length_mm = source.length_mm;
+    kind.source_diameter_mm = source.diameter_mm;
+    kind.strength_date = source.date;
     if (plan_.sources.empty()) {
-      plan_.isotope = source.isotope;
-      // Planning systems leave the model out or have names of their own; this program writes the name that it knows.
-      if (find_source(source.model).ok()) plan_.source_model = source.model;
-      plan_.half_life_days = source.half_life_days;
-      plan_.source_length_mm = source.length_mm;
-      plan_.source_diameter_mm = source.diameter_mm;
-      plan_.strength_date = source.date;
-    } else if (source.isotope != plan_.isotope && !mixed_) {
-      mixed_ = true;
-      plan_.notes.push_back(fmt::format("{}: the source is {}, earlier ones are {}; all are computed with one model.",
-                                        where, source.isotope, plan_.isotope));
+      plan_.source_id = kind.id;
+      plan_.source_model = kind.source_model;
+      plan_.isotope = kind.isotope;
+      plan_.half_life_days = kind.half_life_days;
+      plan_.source_length_mm = kind.source_length_mm;
+      plan_.source_diameter_mm = kind.source_diameter_mm;
+      plan_.strength_date = kind.strength_date;
+      return 0;
     }
+    for (std::size_t k = 0; k < kind_count(plan_); ++k) {
+      const SourceKind other = source_kind(plan_, k);
+      if (other.isotope == kind.isotope && other.source_model == kind.source_model &&
+          other.half_life_days == kind.half_life_days && other.source_length_mm == kind.source_length_mm)
+        return known->second = k;
+    }
+    plan_.more_kinds.push_back(kind);
+    return known->second = plan_.more_kinds.size();
+  }
+
+  /// What the file says about a channel; its weights are filled in later.
+  static ChannelSays says_of(DcmItem& channel, const std::vector<ControlPoint>& points, const std::string& where) {
+    ChannelSays says;
+    says.where = where;
+    says.total_s = number_of(channel, DCM_ChannelTotalTime).value_or(NAN);
+    says.final_weight = number_of(channel, DCM_FinalCumulativeTimeWeight).value_or(0.0);
+    says.points = static_cast<int>(points.size());
+    says.points_said = integer_of(channel, DCM_NumberOfControlPoints).value_or(0);
+    says.pulses = integer_of(channel, DCM_NumberOfPulses).value_or(1);
+    says.shielded = !items_of(channel, DCM_ChannelShieldSequence).empty();
+    return says;
   }
 
   /// Directions of dwell positions without orientation: along the line through their neighbours, towards the tip.
@@ -302,16 +352,14 @@ class RtplanReader {
     return number ? std::to_string(*number) : std::string();
   }
 
-  void add_places(const std::vector<RestingPlace>& places, double strength, double seconds_per_weight,
-                  const std::string& needle) {
+  /// @param common what the places have in common
+  void add_places(const std::vector<RestingPlace>& places, double seconds_per_weight, const PlannedSource& common) {
     for (const RestingPlace& place : places) {
-      PlannedSource source;
+      PlannedSource source = common;
       source.at_mm = place.at_mm;
       source.axis = place.axis.value_or(Vec3::UnitZ());
       source.has_axis = place.axis.has_value();
-      source.strength_U = strength;
       source.dwell_s = place.weight * seconds_per_weight;
-      source.needle = needle;
       if (plan_.implant == Implant::permanent && is_repeated(source)) continue;
       plan_.sources.push_back(source);
     }
@@ -336,19 +384,24 @@ class RtplanReader {
   void read_prescription() {
     double of_target = 0.0;
     for (DcmItem* reference : items_of(data_, DCM_DoseReferenceSequence)) {
-      if (of_target <= 0.0) of_target = number_of(*reference, DCM_TargetPrescriptionDose).value_or(0.0);
+      const double dose = number_of(*reference, DCM_TargetPrescriptionDose).value_or(0.0);
+      if (of_target <= 0.0) of_target = dose;
+      if (dose > 0.0) plan_.says.prescriptions.push_back(dose);
     }
     std::set<double> of_setups;
     int fractions = 1;
     for (DcmItem* group : items_of(data_, DCM_FractionGroupSequence)) {
-      fractions = std::max(fractions, integer_of(*group, DCM_NumberOfFractionsPlanned).value_or(1));
+      const auto planned = integer_of(*group, DCM_NumberOfFractionsPlanned);
+      fractions = std::max(fractions, planned.value_or(1));
+      if (planned) plan_.says.fractions = *planned <= 0 ? -1 : std::max(plan_.says.fractions, *planned);
       for (DcmItem* setup : items_of(*group, DCM_ReferencedBrachyApplicationSetupSequence)) {
         const auto dose = number_of(*setup, DCM_BrachyApplicationSetupDose);
         if (dose && *dose > 0.0) of_setups.insert(*dose);
       }
     }
     const double of_setup = of_setups.size() == 1 ? *of_setups.begin() : 0.0;
-    plan_.prescription_Gy = std::max(0.0, of_target);
+    plan_.prescription_Gy = of_target;  // a negative one is refused by the rules for plans
+    plan_.says.setup_doses.assign(of_setups.begin(), of_setups.end());
     if (of_target <= 0.0 && of_setup > 0.0) {
       plan_.prescription_Gy = of_setup;
       plan_.notes.push_back(fmt::format(
@@ -373,7 +426,7 @@ class RtplanReader {
   int repeated_ = 0;
   int other_strengths_ = 0;
   int turned_by_channel_ = 0;
-  bool mixed_ = false;
+  std::map<int, std::size_t> kinds_;  // of the sources with these numbers
   bool pulsed_ = false;
 };
 

@@ -44,12 +44,15 @@ std::string print_of(const DosePlan& plan, const SourceModel& source, const Pati
   return text;
 }
 
-/// Number of the source item for each strength.
-std::map<double, int> numbers_of_strengths(const DosePlan& plan) {
-  std::map<double, int> numbers;
-  for (const PlannedSource& s : plan.sources) numbers.emplace(s.strength_U, 0);
+/// Kind of source and strength, which have an item of the source sequence together.
+using KindAndStrength = std::pair<std::size_t, double>;
+
+/// Number of the source item for each kind and strength.
+std::map<KindAndStrength, int> numbers_of_strengths(const DosePlan& plan) {
+  std::map<KindAndStrength, int> numbers;
+  for (const PlannedSource& s : plan.sources) numbers.emplace(KindAndStrength(s.kind, s.strength_U), 0);
   int next = 1;
-  for (auto& [strength, number] : numbers) number = next++;
+  for (auto& [key, number] : numbers) number = next++;
   return numbers;
 }
 
@@ -106,15 +109,18 @@ void fill_plan(Filler& fill, DcmDataset& data, const DosePlan& plan, const std::
 
 /// One source for each strength. DICOM asks for a date of the strength; 1900-01-01 stands for one that is not known.
 void fill_sources(Filler& fill, DcmDataset& data, const DosePlan& plan, const SourceModel& source) {
-  for (const auto& [strength, number] : numbers_of_strengths(plan)) {
+  for (const auto& [key, number] : numbers_of_strengths(plan)) {
+    const auto& [kind, strength] = key;
+    SourceKind says{"", source.name, source.isotope, source.half_life_days, source.active_length_mm, 0.0, ""};
+    if (kind > 0) says = source_kind(plan, kind);
     DcmItem& item = fill.new_item(data, DCM_SourceSequence);
     fill.text(item, DCM_SourceNumber, std::to_string(number));
     fill.text(item, DCM_SourceType, "LINE");
     fill.text(item, DCM_SourceManufacturer, "");
-    fill.text(item, DCM_SourceDescription, short_text(source.name, 64));
-    fill.text(item, DCM_ActiveSourceLength, precise_decimal_string(source.active_length_mm));
-    fill.text(item, DCM_SourceIsotopeName, source.isotope);
-    fill.text(item, DCM_SourceIsotopeHalfLife, precise_decimal_string(source.half_life_days));
+    fill.text(item, DCM_SourceDescription, short_text(says.source_model, 64));
+    fill.text(item, DCM_ActiveSourceLength, precise_decimal_string(says.source_length_mm));
+    fill.text(item, DCM_SourceIsotopeName, says.isotope);
+    fill.text(item, DCM_SourceIsotopeHalfLife, precise_decimal_string(says.half_life_days));
     fill.text(item, DcmTagKey(0x300a, 0x0229), "AIR_KERMA_RATE");
     fill.text(item, DCM_ReferenceAirKermaRate, precise_decimal_string(strength));
     // SourceStrength is for sources without an air-kerma rate. Programs that read the rate as a whole number find none
@@ -142,13 +148,14 @@ void fill_point(Filler& fill, DcmItem& channel, int index, double weight, double
 /// Sources of one channel: one seed, or all dwell positions of a needle with one strength, in the order of the plan.
 std::vector<std::vector<const PlannedSource*>> channels_of(const DosePlan& plan) {
   std::vector<std::vector<const PlannedSource*>> channels;
-  std::map<std::pair<std::string, double>, std::size_t> known;
+  std::map<std::pair<std::string, KindAndStrength>, std::size_t> known;
   for (const PlannedSource& s : plan.sources) {
     if (plan.implant == Implant::permanent || s.needle.empty()) {
       channels.push_back({&s});
       continue;
     }
-    const auto [found, is_new] = known.emplace(std::pair(s.needle, s.strength_U), channels.size());
+    const auto [found, is_new] =
+        known.emplace(std::pair(s.needle, KindAndStrength(s.kind, s.strength_U)), channels.size());
     if (is_new) channels.emplace_back();
     channels[found->second].push_back(&s);
   }
@@ -189,14 +196,17 @@ void fill_channels(Filler& fill, DcmDataset& data, const DosePlan& plan, const S
   fill.text(setup, DCM_ApplicationSetupNumber, "1");
   double kerma = 0.0;
   for (const PlannedSource& s : plan.sources) {
-    const double hours = permanent ? source.half_life_days * 24.0 / std::numbers::ln2 : s.dwell_s / 3600.0;
+    const double half_life_days = s.kind > 0 ? source_kind(plan, s.kind).half_life_days : source.half_life_days;
+    const double hours = permanent ? half_life_days * 24.0 / std::numbers::ln2 : s.dwell_s / 3600.0;
     kerma += s.strength_U * hours;
   }
   fill.text(setup, DCM_TotalReferenceAirKerma, precise_decimal_string(kerma));
   int number = 0;
   for (const auto& members : channels_of(plan)) {
     DcmItem& channel = fill.new_item(setup, DCM_ChannelSequence);
-    double total_s = permanent ? source.half_life_days * kSeconds_per_day / std::numbers::ln2 : 0.0;
+    const std::size_t kind = members.front()->kind;
+    const double half_life_days = kind > 0 ? source_kind(plan, kind).half_life_days : source.half_life_days;
+    double total_s = permanent ? half_life_days * kSeconds_per_day / std::numbers::ln2 : 0.0;
     if (!permanent) {
       for (const PlannedSource* s : members) total_s += s->dwell_s;
     }
@@ -207,7 +217,8 @@ void fill_channels(Filler& fill, DcmDataset& data, const DosePlan& plan, const S
     const bool steps = !permanent && places.step_mm > 0.0;
     fill.text(channel, DCM_SourceMovementType, steps ? "STEPWISE" : "FIXED");
     if (steps) fill.text(channel, DCM_SourceApplicatorStepSize, detail::decimal_string(places.step_mm));
-    fill.text(channel, DCM_ReferencedSourceNumber, std::to_string(numbers.at(members.front()->strength_U)));
+    fill.text(channel, DCM_ReferencedSourceNumber,
+              std::to_string(numbers.at({members.front()->kind, members.front()->strength_U})));
     // A number of the applicator would ask for its length and for the structure that shows it.
     if (const std::string& needle = members.front()->needle; !needle.empty())
       fill.text(channel, DCM_SourceApplicatorName, short_text(needle, 64));

@@ -209,7 +209,6 @@ TEST_F(PlanText, names_the_place_and_the_cure_of_each_fault) {
   const std::string seed = R"("seeds": [{"position_mm": [1, 2, 3]}])";
   expect_error("a.json", json(seed), "strength is missing");
   expect_error("b.json", json("\"strength_U\": -1, " + seed), "-1 U");
-  expect_error("c.json", json("\"strength_U\": 40000, " + seed), "40000 U");
   expect_error("d.json", json(R"("strength_U": 0.5, "seed": [])"), "Did you mean 'seeds'");
   expect_error("e.json", json(R"("strength_U": 0.5, "seeds": [{"position_mm": [1, 2]}])"), "three numbers");
   expect_error("f.json", json(R"("strength_U": 0.5, "seeds": [{"axis": [0, 0, 1]}])"), "no position_mm");
@@ -229,10 +228,28 @@ TEST_F(PlanText, names_the_place_and_the_cure_of_each_fault) {
   expect_error("r.csv", "hole,retraction_mm,train\nD4,0,S\n", "template_origin_mm");
 }
 
-TEST_F(PlanText, notes_seeds_that_stand_at_the_same_place) {
-  const DosePlan plan = read_plan(file("plan.csv", "x_mm,y_mm,z_mm,strength_U\n1,2,3,0.5\n1,2,3.001,0.5\n")).value();
-  EXPECT_EQ(plan.sources.size(), 2U);
-  ASSERT_EQ(plan.notes.size(), 1U);
+TEST_F(PlanText, keeps_what_the_rules_for_plans_judge) {
+  const DosePlan seeds = read_plan(file("a.csv",
+                                        "# strength_mCi: 0.4\n# Note: mine\nx_mm,y_mm,z_mm,strength_U,dwell_s\n"
+                                        "1,2,3,0.5,7\n1,2,3.001,0.5,\n"))
+                             .value();
+  EXPECT_EQ(seeds.sources.size(), 2U);
+  EXPECT_EQ(seeds.says.dwell_of_permanent_s, 7.0);
+  EXPECT_EQ(seeds.says.ignored, std::vector<std::string>{"# strength_mCi: 0.4"});
+  const std::string lines = "# implant: temporary\nx_mm,y_mm,z_mm,strength_U,dwell_s\n1,2,3,40000,7\n1,2,4,40000,\n";
+  EXPECT_EQ(read_plan(file("b.csv", lines)).value().says.without_dwell_time, 1U);
+}
+
+TEST_F(PlanText, may_name_a_source_for_each_seed) {
+  const std::string head = "x_mm,y_mm,z_mm,strength_U,source\n1,2,3,0.5,i125_6711\n";
+  const DosePlan plan = read_plan(file("plan.csv", head + "1,2,9,2,pd103_theraseed200\n1,9,3,0.5,i125_6711\n")).value();
+  ASSERT_EQ(kind_count(plan), 2U);
+  EXPECT_EQ(source_kind(plan, 1).source_model, "pd103_theraseed200");
+  EXPECT_EQ(plan.sources[1].kind, 1U);
+  EXPECT_EQ(plan.sources[2].kind, 0U);
+  ASSERT_TRUE(write_plan_json(plan, folder / "again.json").ok());
+  EXPECT_EQ(kind_count(read_plan(folder / "again.json").value()), 2U);
+  expect_error("none.csv", head + "1,2,9,0.5,\n", "names no source");
 }
 
 TEST_F(PlanText, is_recognised_by_its_content) {

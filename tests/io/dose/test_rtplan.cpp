@@ -252,6 +252,37 @@ TEST_F(Rtplan, says_that_a_seed_comes_again_with_another_strength) {
   EXPECT_TRUE(says(read_back, "another strength"));
 }
 
+TEST_F(Rtplan, has_a_kind_of_source_for_each_isotope_and_not_for_each_strength) {
+  RtplanFile plan = seeds();
+  plan.source(2, "Pd-103", 16.991, "2");
+  plan.source(3, "I-125", 59.4, "0.6");
+  plan.source(4, "I-125", 59.4, "0.7");
+  for (int k = 1; k < 4; ++k) {
+    const Vec3 at(0, 0, 10.0 * k);
+    RtplanFile::channel(plan.setup("UNDEFINED", k), 1, 0.0, 1.0, {{at, 0.0}, {at, 1.0}}, k);
+  }
+  const DosePlan read_back = read(plan).value();
+  ASSERT_EQ(kind_count(read_back), 2U);
+  EXPECT_EQ(source_kind(read_back, 1).id, "2");
+  EXPECT_EQ(source_kind(read_back, 1).isotope, "Pd-103");
+  EXPECT_EQ(read_back.sources[1].kind, 1U);
+  EXPECT_EQ(read_back.sources[2].kind, 0U);
+  EXPECT_EQ(read_back.sources[2].strength_U, 0.6);
+  ASSERT_EQ(read_back.says.unused.size(), 1U) << "source 4";
+}
+
+TEST_F(Rtplan, keeps_what_it_says_of_its_channels) {
+  RtplanFile plan = hdr();
+  const std::vector<testing_files::Point> there{{Vec3::Zero(), 0.0}, {Vec3::Zero(), 6.0}};
+  put(RtplanFile::channel(plan.setup("TEMPLATE", 1), 1, 6.0, 6.0, there), DCM_ChannelTotalTime, "");
+  RtplanFile::channel(plan.setup("TEMPLATE", 2), 2, 6.0, 3.0, there);
+  const DosePlan read_back = read(plan).value();
+  ASSERT_EQ(read_back.says.channels.size(), 2U);
+  EXPECT_TRUE(std::isnan(read_back.says.channels[0].total_s));
+  EXPECT_EQ(read_back.says.channels[0].weights, 6.0);
+  EXPECT_EQ(read_back.says.channels[1].final_weight, 3.0);
+}
+
 TEST_F(Rtplan, may_let_the_weights_start_again_at_each_place) {
   RtplanFile plan = hdr();
   RtplanFile::channel(plan.setup("TEMPLATE", 1), 1, 10.0, 10.0,

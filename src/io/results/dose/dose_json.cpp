@@ -85,12 +85,15 @@ OrderedJson patient_json(const PatientRecord& p) {
           {"from", text_or_null(p.file)}};
 }
 
-OrderedJson seed_row(const PlannedSource& seed) {
-  return {{"position_mm", vector_list(seed.at_mm)},
-          {"axis", vector_list(seed.axis)},
-          {"strength_U", seed.strength_U},
-          {"needle", seed.needle},
-          {"dwell_s", seed.dwell_s}};
+OrderedJson seed_row(const DoseEvaluation& evaluation, const PlannedSource& seed) {
+  OrderedJson row = {{"position_mm", vector_list(seed.at_mm)},
+                     {"axis", vector_list(seed.axis)},
+                     {"strength_U", seed.strength_U},
+                     {"needle", seed.needle},
+                     {"dwell_s", seed.dwell_s}};
+  if (!evaluation.more_sources.empty())
+    row["source"] = seed.kind == 0 ? evaluation.source.name : evaluation.more_sources.at(seed.kind - 1).name;
+  return row;
 }
 
 }  // namespace
@@ -102,10 +105,13 @@ std::string dose_json(const DoseEvaluation& evaluation) {
   for (const JudgedGoal& goal : evaluation.goals) goals.push_back(goal_row(goal));
   for (std::size_t k = 0; k < evaluation.points.size() && k < evaluation.point_Gy.size(); ++k)
     points.push_back(point_row(evaluation.points[k], evaluation.point_Gy[k]));
-  for (const PlannedSource& seed : evaluation.plan.sources) seeds.push_back(seed_row(seed));
+  for (const PlannedSource& seed : evaluation.plan.sources) seeds.push_back(seed_row(evaluation, seed));
+  OrderedJson sources = {evaluation.source.name};
+  for (const SourceModel& model : evaluation.more_sources) sources.push_back(model.name);
   const OrderedJson json = {
       {"seeds", evaluation.plan.sources.size()},
       {"source", evaluation.source.name},
+      {"sources", sources},
       {"formalism", to_string(evaluation.formalism)},
       {"prescription_Gy",
        evaluation.prescription_Gy > 0.0 ? OrderedJson(evaluation.prescription_Gy) : OrderedJson(nullptr)},
