@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command.hpp"
+#include "early_warnings.hpp"
 #include "output_path.hpp"
 #include "table.hpp"
 
@@ -186,6 +187,7 @@ Result<> run_implant(const ImplantArguments& arguments, Console& console) {
                                : std::filesystem::path(arguments.output);
   if (Result<> writable = check_output_folder(folder); !writable) return writable;
   if (Result<> kept = check_found_is_no_result(arguments.found, folder); !kept) return kept;
+  warn_before_start(arguments.scenario, arguments.settings, console);
   const Result<ImplantOutcome> outcome = implant(*scenario, arguments.scenario,
                                                  {.compensate = arguments.compensate,
                                                   .span = arguments.span,

@@ -5,6 +5,7 @@
 #include "scenario_draft.hpp"
 #include "validators.hpp"
 
+#include "stylet/core/nearest_name.hpp"
 #include "stylet/dose/known_sources.hpp"
 #include "stylet/io/dose_io.hpp"
 #include "stylet/io/input.hpp"
@@ -48,9 +49,22 @@ void add_fit(const PatientInput& input, const InfoArguments& arguments, Descript
   if (!out.warnings.empty()) out.json["warnings"] = out.warnings;
 }
 
+/// Refuses a word that is no file and nearly the name of a source model.
+Result<> not_a_mistyped_source(const std::string& word) {
+  std::error_code code;
+  if (std::filesystem::path(word).has_parent_path() || std::filesystem::exists(word, code)) return Ok{};
+  std::vector<std::string> names;
+  for (const SourceModel& source : known_sources()) names.push_back(source.name);
+  const std::string near = nearest_name(word, names);
+  if (near.empty()) return Ok{};
+  return input_error(word, fmt::format("no such file, and no source model; did you mean '{}'?", near),
+                     "stylet info sources lists the source models");
+}
+
 Result<Description> description_of(const InfoArguments& arguments) {
   if (arguments.file == "sources") return describe_known_sources();
   if (const Result<SourceModel> known = find_source(arguments.file); known) return describe(*known);
+  if (Result<> named = not_a_mistyped_source(arguments.file); !named) return named.error();
   switch (dose_file_kind(arguments.file)) {
     case DoseFileKind::plan:
       return described(read_plan(arguments.file));

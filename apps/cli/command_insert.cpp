@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command.hpp"
 #include "describe.hpp"
+#include "early_warnings.hpp"
 #include "map_text.hpp"
 #include "output_path.hpp"
 #include "recorded_run.hpp"
@@ -245,6 +246,7 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
                        "Give the scenario of the recording instead, or leave --map out");
   }
 
+  warn_before_start(arguments.scenario, arguments.settings, console);
   Result<RecordedRun> source = what_to_run(arguments, console.progress());
   if (!source) return source.error();
   const PreparedModel& prepared = source->prepared;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command.hpp"
+#include "early_warnings.hpp"
 #include "output_path.hpp"
 #include "table.hpp"
 
@@ -55,6 +56,7 @@ Result<> run_prepare(const PrepareArguments& arguments, Console& console) {
   if (!file) return file.error();
   const std::filesystem::path& output = *file;
   if (Result<> writable = check_output_file(output); !writable) return writable;
+  warn_before_start(arguments.scenario, arguments.settings, console);
   const Result<PreparedModel> prepared = prepare_model_file(arguments.scenario, arguments.settings, console.progress());
   if (!prepared) return prepared.error();
   const Model& model = *prepared->model;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command.hpp"
+#include "early_warnings.hpp"
 #include "igtl_companion.hpp"
+#include "output_path.hpp"
 #include "validators.hpp"
 
 #include "stylet/io/implant_record_io.hpp"
@@ -80,6 +82,7 @@ Result<serve::CaseSource> case_of(const fs::path& file, const ServeArguments& ar
   if (!is_hdf5_file(file) && !is_meant_as_model(file)) {
     const Result<Scenario> scenario = read_scenario(file, arguments.settings);
     if (!scenario) return scenario.error();
+    warn_before_start(file.string(), arguments.settings, console);
     title = scenario->name;
     has_plan = scenario->insertions.empty() && scenario->plan.is_given();
     if (!scenario->procedure.stabilising.empty()) {
@@ -193,6 +196,7 @@ Result<> run_serve(const ServeArguments& arguments, Console& console) {
   settings.session.recordings = arguments.recordings;
   settings.session.keep_bytes = keep_bytes(arguments.keep_GB);
   settings.session.say = [&console](const std::string& text) { console.warn(text); };
+  if (Result<> writable = check_output_folder(arguments.recordings); !writable) return writable;
   if (auto added = add_inputs(arguments, settings.session, console); !added) return added;
   EndSignal end;
   auto igtl = open_igtl(arguments.igtl);

@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <set>
 
 namespace stylet::cli {
 
@@ -38,6 +39,7 @@ struct Console::Parts {
   bool output_is_open = true;
   std::string output_lost;                 ///< why standard output cannot be written; empty: it can
   int json_descriptor = -1;                ///< the real standard output while --json - redirects stdout to stderr
+  std::set<std::string> told;              ///< warnings that were given ahead
   std::weak_ptr<ProgressDisplay> display;  ///< exists while progress may be reported
 
   /// Prints a line. @return the reason if it could not be printed, otherwise empty
@@ -93,7 +95,15 @@ void Console::detail(std::string_view text) {
   if (parts_->options.verbose) parts_->line(stderr, "stylet: ", text);
 }
 
-void Console::warn(std::string_view text) { parts_->line(stderr, "stylet: warning: ", text); }
+void Console::warn(std::string_view text) {
+  if (parts_->told.erase(std::string(text)) > 0) return;
+  parts_->line(stderr, "stylet: warning: ", text);
+}
+
+void Console::warn_ahead(const std::string& text) {
+  warn(text);
+  parts_->told.insert(text);
+}
 
 void Console::error(std::string_view text) { parts_->line(stderr, "stylet: error: ", text); }
 

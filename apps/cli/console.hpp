@@ -43,6 +43,8 @@ class Console {
   /// Prints a detail on standard error; only with --verbose.
   void detail(std::string_view text);
   void warn(std::string_view text);
+  /// Warns before the work whose own warnings will have the same text: warn() then leaves it out once.
+  void warn_ahead(const std::string& text);
   void error(std::string_view text);
 
   /// Shows the progress of long work: a bar if standard error is a terminal, otherwise plain lines from time to time.

@@ -25,6 +25,7 @@ class LinkCompanion final : public serve::Companion {
   [[nodiscard]] std::string name() const override { return "OpenIGTLink"; }
   [[nodiscard]] std::unique_ptr<Device> device() override { return has_hand_ ? link_->device() : nullptr; }
   [[nodiscard]] std::string why_no_pose() const override;
+  [[nodiscard]] std::string trouble() const override;
 
   void show(const serve::Scene& scene) override;
   void show(const Snapshot& snapshot, const DeviceSnapshot& device) override;
@@ -48,15 +49,36 @@ class LinkCompanion final : public serve::Companion {
   std::optional<Pose> probe_;  ///< of the last picture
 };
 
+/// What to do when connections are closed because of their checksums. The link does not know options of the program.
+std::string with_option(const igtl::LinkState& state, bool checksums) {
+  const bool by_checksum = checksums && state.problem.find("checksum") != std::string::npos;
+  return state.problem + (by_checksum ? " (--igtl-no-checksum)" : "");
+}
+
 std::string LinkCompanion::why_no_pose() const {
   const igtl::LinkState state = link_->state();
+  const std::string closed = state.garbage > 0 ? "; " + with_option(state, settings_.checksums) : "";
   if (state.connections == 0)
-    return settings_.role == igtl::Role::server
-               ? fmt::format("no client is connected to port {}", state.port)
-               : fmt::format("no connection to {}:{}", bracketed(settings_.host), state.port);
-  if (state.poses + state.unusable == 0) return fmt::format("no {} has been received yet", settings_.input);
+    return (settings_.role == igtl::Role::server
+                ? fmt::format("no client is connected to port {}", state.port)
+                : fmt::format("no connection to {}:{}", bracketed(settings_.host), state.port)) +
+           closed;
+  if (state.poses + state.unusable == 0) {
+    return fmt::format("no {} has been received yet{}", settings_.input,
+                       state.unused.empty() ? "" : ", but " + state.unused + ", which is not used");
+  }
   if (!state.tracked) return fmt::format("no usable {} is received", settings_.input);
   return fmt::format("no new {} is received", settings_.input);
+}
+
+std::string LinkCompanion::trouble() const {
+  const igtl::LinkState state = link_->state();
+  if (state.garbage > 0) return with_option(state, settings_.checksums) + '.';
+  if (state.unused.empty() || state.poses + state.unusable + state.probe_poses > 0) return {};
+  return fmt::format(
+      "{} is received and not used. Poses are taken from TRANSFORM or POSITION with a quaternion, named "
+      "{} for the needle and {} for the probe.",
+      state.unused, settings_.input, settings_.probe_input);
 }
 
 void LinkCompanion::show(const serve::Scene& scene) {
@@ -152,6 +174,7 @@ Result<IgtlCompanion> open_igtl(const IgtlArguments& arguments) {
                        "Give --igtl PORT (usually 18944) or --igtl-connect HOST as well");
   }
   igtl::LinkSettings settings;
+  settings.checksums = !arguments.no_checksum;
   settings.role = listens ? igtl::Role::server : igtl::Role::client;
   const auto read = listens ? read_place("--igtl", arguments.listen, settings)
                             : read_place("--igtl-connect", arguments.connect, settings);

@@ -16,6 +16,9 @@ void add_igtl_options(CLI::App& app, IgtlArguments& arguments) {
          "connection is lost")
       ->type_name("HOST[:PORT]")
       ->excludes(listen);
+  app.add_flag("--igtl-no-checksum", arguments.no_checksum,
+               "Take OpenIGTLink messages whose checksum (CRC) is wrong or 0, as 3D Slicer and PLUS can be set to; "
+               "without it such a message closes its connection");
   app.add_option("--hand", arguments.hand,
                  "Source of the needle's motion: page, or igtl for the transform HandleToReference received over "
                  "OpenIGTLink")

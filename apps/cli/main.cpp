@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <exception>
 #include <iostream>
@@ -46,6 +47,21 @@ int report(Console& console, const Error& error) {
   return error.kind == ErrorKind::input ? kBadInput : kFailed;
 }
 
+/// The words of the command line, with the ways to ask for help that other programs have: `help`, `help COMMAND` and
+/// `version` become options.
+std::vector<std::string> words_of(int argc, char** argv) {
+  std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  if (words.empty()) return words;
+  if (words.front() == "version") words.front() = "--version";
+  if (words.front() == "help") {
+    words.erase(words.begin());
+    if (words.empty()) return {"--help"};
+    words.resize(1);
+    words.emplace_back("--help");
+  }
+  return words;
+}
+
 int run(int argc, char** argv, Console& console) {
   CLI::App program("Real-time simulation of a flexible needle in soft tissue. Not a medical device.", "stylet");
   program.set_version_flag("--version", std::string("stylet ") + version());
@@ -61,8 +77,14 @@ int run(int argc, char** argv, Console& console) {
   add_common_options(program, common);  // common options may stand before or after the command
   for (const Command& command : commands) add_common_options(*command.app, common);
 
+  std::vector<std::string> words = words_of(argc, argv);
+  if (!words.empty() && !words.front().starts_with('-') && !is_command(words.front(), program)) {
+    console.error(unknown_command(words, program));
+    return kBadInput;
+  }
+  std::reverse(words.begin(), words.end());  // the parser takes them from the back
   try {
-    program.parse(argc, argv);
+    program.parse(std::move(words));
   } catch (const CLI::Success& asked) {  // --help, --version
     const int status = program.exit(asked);
     return std::cout.flush() ? status : kFailed;

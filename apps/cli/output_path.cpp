@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
 #include <fstream>
 
 namespace stylet::cli {
@@ -17,6 +20,33 @@ fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.
 
 constexpr const char* kCure = "Choose another place with -o or --json";
 
+/// Writes a small file into a folder and removes it, since permissions alone do not say whether the disk is full or
+/// may only be read. @param wanted the output for which this is tried
+Result<> try_to_write(const fs::path& folder, const fs::path& wanted) {
+  constexpr std::size_t longest_name = 255;
+  for (const fs::path& part : wanted) {
+    if (part.string().size() > longest_name)
+      return input_error(wanted.string(), fmt::format("a name in it has more than {} bytes", longest_name), kCure);
+  }
+  std::string name = (folder / ".stylet.XXXXXX").string();
+  errno = 0;
+  const int file = ::mkstemp(name.data());
+  int reason = errno;
+  if (file >= 0) {
+    const std::string some(4096, ' ');
+    errno = 0;
+    const bool written =
+        ::write(file, some.data(), some.size()) == static_cast<ssize_t>(some.size()) && ::fsync(file) == 0;
+    reason = written ? 0 : errno != 0 ? errno : ENOSPC;
+    ::close(file);
+    ::unlink(name.c_str());
+  }
+  if (reason == 0) return Ok{};
+  return input_error(wanted.string(),
+                     fmt::format("the folder '{}' is not writable ({})", folder.string(), std::strerror(reason)),
+                     kCure);
+}
+
 }  // namespace
 
 Result<> check_output_folder(const fs::path& path) {
@@ -28,10 +58,7 @@ Result<> check_output_folder(const fs::path& path) {
   if (!fs::is_directory(existing, code)) {
     return input_error(path.string(), fmt::format("'{}' is not a folder", existing.string()), kCure);
   }
-  if (::access(existing.c_str(), W_OK | X_OK) != 0) {
-    return input_error(path.string(), fmt::format("the folder '{}' is not writable", existing.string()), kCure);
-  }
-  return Ok{};
+  return try_to_write(existing, path);
 }
 
 Result<> check_output_file(const fs::path& path) {

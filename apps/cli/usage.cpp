@@ -2,10 +2,12 @@
 #include "usage.hpp"
 
 #include "stylet/core/nearest_name.hpp"
+#include "stylet/sim/scenario.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 namespace stylet::cli {
 
@@ -37,21 +39,67 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
   return nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
 }
 
+/// For a command with --set: the key of the scenario that an unknown option may mean, "--nodes" for mesh.nodes.
+std::string as_setting(const std::string& option, const CLI::App& app) {
+  if (app.get_option_no_throw("--set") == nullptr) return {};
+  std::vector<std::string> leaves;
+  for (const ScenarioKey& key : scenario_keys()) leaves.push_back(key.path.substr(key.path.rfind('.') + 1));
+  std::string wanted = option.substr(std::min(option.find_first_not_of('-'), option.size()));
+  std::replace(wanted.begin(), wanted.end(), '-', '_');
+  const std::string near = nearest_name(wanted, leaves);
+  if (near.empty()) return {};
+  const auto at = static_cast<std::size_t>(std::find(leaves.begin(), leaves.end(), near) - leaves.begin());
+  std::string path = scenario_keys()[at].path;
+  if (const auto list = path.find("[]"); list != std::string::npos) path.insert(list + 1, "0");
+  if (const auto region = path.find("<region>"); region != std::string::npos) path.replace(region, 8, "REGION");
+  return fmt::format("; a key of the scenario is set with --set {}=VALUE", path);
+}
+
+/// A word in the place of the command that is none.
+std::string unknown(const std::string& word, const CLI::App& program) {
+  std::error_code code;
+  if (std::filesystem::exists(word, code)) {
+    return fmt::format("'{}' is a file or folder; a command comes first, for example stylet info '{}'", word, word);
+  }
+  const std::vector<std::string> commands = command_names(program);
+  std::string meant = did_you_mean(word, commands);
+  if (meant.empty()) meant = fmt::format("; the commands are {}", fmt::join(commands, ", "));
+  return fmt::format("unknown command '{}'{}", word, meant);
+}
+
 /// Explains the first word that the parser could not assign.
 std::string explain_word(const CLI::App& program, const CLI::App& app, const std::vector<std::string>& words) {
   const auto option =
       std::find_if(words.begin(), words.end(), [](const auto& w) { return w.size() > 1 && w[0] == '-'; });
   if (option != words.end()) {
     const std::string name = option->substr(0, option->find('='));
-    return fmt::format("unknown option '{}'{}", name, did_you_mean(name, option_names(app)));
+    std::string meant = did_you_mean(name, option_names(app));
+    if (meant.empty()) meant = as_setting(name, app);
+    return fmt::format("unknown option '{}'{}", name, meant);
   }
   if (&app == &program) {
-    return fmt::format("unknown command '{}'{}", words.front(), did_you_mean(words.front(), command_names(program)));
+    return unknown(words.front(), program);
   }
-  return fmt::format("'{}' is one argument too many", words.front());
+  const CLI::Option* output = app.get_option_no_throw("--output");
+  const bool is_output = output != nullptr && output->count() == 0;
+  return fmt::format("'{}' is one argument too many{}", words.front(),
+                     is_output ? fmt::format("; an output is given with -o {}", words.front()) : "");
 }
 
 }  // namespace
+
+bool is_command(const std::string& word, const CLI::App& program) {
+  const std::vector<std::string> names = command_names(program);
+  return std::find(names.begin(), names.end(), word) != names.end();
+}
+
+std::string unknown_command(const std::vector<std::string>& words, const CLI::App& program) {
+  std::string what = unknown(words.front(), program);
+  if (words.size() > 1 && is_command(words[1], program)) {
+    what = fmt::format("the command comes before its arguments: write stylet {} {} …", words[1], words.front());
+  }
+  return fmt::format("{}{} See stylet --help", what, what.back() == '?' ? "" : ".");
+}
 
 std::string explain(const CLI::ParseError& error, const CLI::App& program) {
   const CLI::App& app = active(program);

@@ -8,7 +8,7 @@ std::string Error::message() const {
   if (!text.empty() && !what.empty()) text += ": ";
   text += what;
   if (!cure.empty()) {
-    if (!text.empty() && text.back() != '.') text += '.';
+    if (!text.empty() && text.back() != '.' && text.back() != '?') text += '.';
     text += ' ' + cure;
   }
   return text;

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "face_table.hpp"
+#include "stylet/geom/plausible_size.hpp"
 #include "stylet/geom/tet_mesh.hpp"
 
 namespace stylet {
@@ -13,8 +14,6 @@ namespace {
 // 0.71. Rounding of node coordinates to single precision, the coarsest precision of file formats, leaves about this
 // much.
 constexpr double kFlat = 1e-6;
-constexpr double kSmallestExtent_mm = 5.0;
-constexpr double kLargestExtent_mm = 2000.0;
 
 std::string number(double value) {
   char text[32];
@@ -96,16 +95,7 @@ Result<> check_coordinates(const TetMesh& mesh, const std::string& where) {
     }
     box.extend(mesh.nodes[a]);
   }
-  const double extent = box.sizes().maxCoeff();
-  if (extent < kSmallestExtent_mm || extent > kLargestExtent_mm) {
-    const bool small = extent < kSmallestExtent_mm;
-    const std::string guess = small ? "metres or centimetres" : "micrometres";
-    return input_error(where,
-                       "the mesh is " + number(extent) + " mm across, expected " + number(kSmallestExtent_mm) + " to " +
-                           number(kLargestExtent_mm) + " mm; its coordinates may be in " + guess,
-                       "Convert the coordinates to millimetres");
-  }
-  return Ok{};
+  return check_size(box.sizes().maxCoeff(), where, "the mesh");
 }
 
 // This check also catches a tetrahedron that names a node twice and whose volume is not zero because of rounding.

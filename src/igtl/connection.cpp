@@ -29,7 +29,8 @@ void set_options(Connection::Socket& socket) {
 
 }  // namespace
 
-Connection::Connection(Socket socket, Events events) : socket_(std::move(socket)), events_(std::move(events)) {
+Connection::Connection(Socket socket, Events events, bool checksums)
+    : socket_(std::move(socket)), events_(std::move(events)), reader_({.checksums = checksums}) {
   set_options(socket_);
 }
 
@@ -40,7 +41,7 @@ void Connection::read() {
     if (self->closed_) return;
     if (error) return self->close();
     const auto ok = self->reader_.take(std::span(self->room_).first(n), self->events_.message);
-    if (!ok) return self->close(ok.error().what);
+    if (!ok) return self->close(ok.error());
     self->read();
   });
 }
@@ -74,7 +75,7 @@ void Connection::send() {
   });
 }
 
-void Connection::close(const std::string& garbage) {
+void Connection::close(const std::optional<Error>& garbage) {
   if (closed_) return;
   closed_ = true;
   waiting_ = {};

@@ -8,6 +8,7 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 
 namespace stylet::igtl {
 
@@ -23,15 +24,16 @@ class Connection : public std::enable_shared_from_this<Connection> {
   struct Events {
     std::function<void(const Incoming&)> message;
     /// Called once; no event follows. @param garbage what was wrong with the received bytes; empty: nothing was wrong
-    std::function<void(const std::string& garbage)> closed;
+    std::function<void(const std::optional<Error>& garbage)> closed;
   };
 
-  Connection(Socket socket, Events events);
+  /// @param checksums whether the received bodies have to match their checksums
+  Connection(Socket socket, Events events, bool checksums);
   void start();  ///< starts reading
   /// Queues a message. @return false if it replaced a waiting message of the same content
   bool offer(Content content, Shared bytes);
   /// Closes the connection and calls Events::closed; does nothing if it is closed already.
-  void close(const std::string& garbage = {});
+  void close(const std::optional<Error>& garbage = {});
   /// Whether data are being sent. @param start set to the time at which this send started
   [[nodiscard]] bool sending_since(Clock::time_point& start) const;
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hub.hpp"
 
+#include <fmt/format.h>
+
 namespace stylet::igtl {
 
 Hub::Hub(const LinkSettings& settings)
@@ -8,15 +10,17 @@ Hub::Hub(const LinkSettings& settings)
 
 void Hub::add(Connection::Socket socket, std::function<void()> on_end) {
   const ConnectionId id = ++last_id_;
-  auto connection = std::make_shared<Connection>(
-      std::move(socket), Connection::Events{
-                             .message = [this, id](const Incoming& m) { hear(id, m); },
-                             .closed =
-                                 [this, id, on_end = std::move(on_end)](const std::string& garbage) {
-                                   ended(id, garbage);
-                                   if (on_end) on_end();
-                                 },
-                         });
+  auto connection =
+      std::make_shared<Connection>(std::move(socket),
+                                   Connection::Events{
+                                       .message = [this, id](const Incoming& m) { hear(id, m); },
+                                       .closed =
+                                           [this, id, on_end = std::move(on_end)](const std::optional<Error>& garbage) {
+                                             ended(id, garbage);
+                                             if (on_end) on_end();
+                                           },
+                                   },
+                                   settings_.checksums);
   connections_.emplace(id, connection);
   ++counted_.connected;
   for (std::size_t k = 0; k < Connection::kContents; ++k)
@@ -27,9 +31,15 @@ void Hub::add(Connection::Socket socket, std::function<void()> on_end) {
 /// Poses of the probe go to the probe alone; the state of a sender concerns both.
 void Hub::hear(ConnectionId from, const Incoming& message) {
   const auto now = PoseInput::Clock::now();
-  const bool of_probe = message.kind == Incoming::Kind::transform && message.name == probe_.name();
+  const bool of_probe = message.kind == Incoming::Kind::pose && message.name == probe_.name();
   if (of_probe || message.kind == Incoming::Kind::status) probe_.hear(from, message, now);
   if (!of_probe) input_.hear(from, message, now);
+  const bool used = of_probe || (message.kind == Incoming::Kind::pose && message.name == input_.name());
+  const bool named = message.name == input_.name() || message.name == probe_.name();
+  const bool has_pose = named || message.type == "TRANSFORM" || message.type == "POSITION" || message.type == "TDATA" ||
+                        message.type == "QTDATA";
+  if (!used && has_pose && message.kind != Incoming::Kind::status)
+    counted_.unused = fmt::format("{} '{}'", message.type, printable(message.name));
 }
 
 void Hub::turn_away() {
@@ -37,13 +47,13 @@ void Hub::turn_away() {
   counted_.problem = "there are max_connections connections already, so another one was refused";
 }
 
-void Hub::ended(ConnectionId id, const std::string& garbage) {
+void Hub::ended(ConnectionId id, const std::optional<Error>& garbage) {
   input_.closed(id);
   probe_.closed(id);
   connections_.erase(id);
-  if (garbage.empty()) return;
+  if (!garbage) return;
   ++counted_.garbage;
-  counted_.problem = "a connection sent " + garbage + " and was closed";
+  counted_.problem = fmt::format("a connection was closed because it sent {}. {}", garbage->what, garbage->cure);
 }
 
 void Hub::offer(Connection& to, Connection::Content content, const Connection::Shared& bytes) {

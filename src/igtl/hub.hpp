@@ -43,7 +43,7 @@ class Hub {
  private:
   void offer(Connection& to, Connection::Content content, const Connection::Shared& bytes);
   void hear(ConnectionId from, const Incoming& message);
-  void ended(ConnectionId id, const std::string& garbage);
+  void ended(ConnectionId id, const std::optional<Error>& garbage);
 
   const LinkSettings& settings_;
   PoseInput input_;

@@ -3,13 +3,17 @@
 
 #include <fmt/format.h>
 #include <igtl_header.h>
+#include <igtl_position.h>
 #include <igtl_transform.h>
 #include <igtl_util.h>
 
 #include <boost/endian/conversion.hpp>
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstring>
+#include <optional>
 #include <string_view>
 
 namespace stylet::igtl {
@@ -18,8 +22,8 @@ namespace {
 
 static_assert(sizeof(igtl_header) == IGTL_HEADER_SIZE);
 
-Error garbage(std::string what) {
-  return input_error("OpenIGTLink message", std::move(what), "Let the other program send OpenIGTLink, version 1 to 3");
+Error garbage(std::string what, std::string cure = "Let the other program send OpenIGTLink") {
+  return input_error("OpenIGTLink message", std::move(what), std::move(cure));
 }
 
 /// The text of a field, up to a zero byte or the end of the field.
@@ -34,10 +38,40 @@ bool is_name(std::string_view name) {
   return std::all_of(name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x20; });
 }
 
+/// The matrix of a position and a unit quaternion; empty if there is no orientation or the quaternion has another norm.
+std::optional<RasMatrix> pose_of_position(std::span<const std::uint8_t> content) {
+  std::array<float, 7> v{};
+  if (content.size() != IGTL_POSITION_MESSAGE_DEFAULT_SIZE &&
+      content.size() != IGTL_POSITION_MESSAGE_WITH_QUATERNION3_SIZE)
+    return {};
+  for (std::size_t k = 0; k < content.size() / sizeof(float); ++k)
+    v[k] = std::bit_cast<float>(boost::endian::load_big_u32(content.data() + k * sizeof(float)));
+  // Three numbers are the imaginary part; the real one, which is not negative, makes the norm 1.
+  if (content.size() == IGTL_POSITION_MESSAGE_WITH_QUATERNION3_SIZE)
+    v[6] = std::sqrt(std::max(0.0F, 1.0F - v[3] * v[3] - v[4] * v[4] - v[5] * v[5]));
+  const Eigen::Quaternionf q(v[6], v[3], v[4], v[5]);
+  constexpr float tolerance = 1e-3F;
+  if (!(std::abs(q.norm() - 1.0F) <= tolerance)) return {};
+  RasMatrix matrix{};
+  const Eigen::Matrix3f turn = q.normalized().toRotationMatrix();
+  for (std::size_t column = 0; column < 3; ++column) {
+    for (std::size_t row = 0; row < 3; ++row)
+      matrix[3 * column + row] = turn(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column));
+    matrix[9 + column] = v[column];
+  }
+  return matrix;
+}
+
 std::size_t big16(const std::uint8_t* at) { return boost::endian::load_big_u16(at); }
 std::size_t big32(const std::uint8_t* at) { return boost::endian::load_big_u32(at); }
 
 }  // namespace
+
+std::string printable(std::string name) {
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return name;
+}
 
 Result<> MessageReader::read_header() {
   igtl_header h;
@@ -46,11 +80,14 @@ Result<> MessageReader::read_header() {
   const std::string_view type = text(h.name, sizeof h.name);
   const std::string_view name = text(h.device_name, sizeof h.device_name);
   if (h.version != 1 && h.version != 2)
-    return garbage(fmt::format("a header of version {}", static_cast<unsigned>(h.version)));
+    return garbage(
+        fmt::format("a header of version {}, which is not read", static_cast<unsigned>(h.version)),
+        "Let the other program send messages with header version 1 or 2, which all releases of the protocol use");
   if (!is_type(type) || !is_name(name)) return garbage("a header whose type or name is not text");
-  if (h.body_size > longest_) return garbage(fmt::format("a {} of {} bytes", type, std::uint64_t{h.body_size}));
+  if (h.body_size > options_.longest) return garbage(fmt::format("a {} of {} bytes", type, std::uint64_t{h.body_size}));
   message_ = {};
-  if (type == "TRANSFORM") message_.kind = Incoming::Kind::transform;
+  message_.type = type;
+  if (type == "TRANSFORM" || type == "POSITION") message_.kind = Incoming::Kind::pose;
   if (type == "STATUS") message_.kind = Incoming::Kind::status;
   message_.name = name;
   keep_ = message_.kind != Incoming::Kind::other;
@@ -63,7 +100,11 @@ Result<> MessageReader::read_header() {
 }
 
 Result<> MessageReader::read_body(Incoming& message) {
-  if (crc64(body_.data(), body_.size(), 0) != crc_) return garbage("a body that does not match its checksum");
+  if (options_.checksums && crc64(body_.data(), body_.size(), 0) != crc_) {
+    return garbage(fmt::format("a {} '{}' whose body does not match its checksum{}", message.type,
+                               printable(message.name), crc_ == 0 ? ", which is 0" : ""),
+                   "Let the other program compute checksums (CRC-64), or switch their check off here");
+  }
   std::span<const std::uint8_t> content(body_);
   if (version_ == 2) {
     // Extended header: its own length, the lengths of the two parts of the metadata at the end, a message number.
@@ -73,7 +114,11 @@ Result<> MessageReader::read_body(Incoming& message) {
     if (before < 12 || before + after > body_.size()) return garbage("an extended header with wrong lengths");
     content = content.subspan(before, body_.size() - before - after);
   }
-  if (message.kind == Incoming::Kind::transform) {
+  if (message.type == "POSITION") {
+    const auto matrix = pose_of_position(content);
+    message.kind = matrix ? Incoming::Kind::pose : Incoming::Kind::other;
+    if (matrix) message.matrix = *matrix;
+  } else if (message.kind == Incoming::Kind::pose) {
     if (content.size() != IGTL_TRANSFORM_SIZE)
       return garbage(fmt::format("a TRANSFORM of {} bytes instead of {}", content.size(), IGTL_TRANSFORM_SIZE));
     std::memcpy(message.matrix.data(), content.data(), IGTL_TRANSFORM_SIZE);

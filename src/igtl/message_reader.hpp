@@ -15,20 +15,29 @@ namespace stylet::igtl {
 
 /// The parts of a received message that a link uses.
 struct Incoming {
-  enum class Kind { transform, status, other } kind = Kind::other;
+  enum class Kind { pose, status, other } kind = Kind::other;
+  std::string type;  ///< as sent, such as "TRANSFORM" or "POSITION"
   std::string name;
-  RasMatrix matrix{};      ///< of a TRANSFORM
+  RasMatrix matrix{};      ///< of a pose
   std::uint16_t code = 0;  ///< of a STATUS; 1 means OK
 };
 
+/// A received name for people: bytes beyond printable ASCII become '?'.
+std::string printable(std::string name);
+
 /// Decodes messages from the bytes of a connection, in pieces of any size. The bytes are not trusted: the length in the
 /// header is checked before the body is stored, and only bodies of at most kKept bytes are stored. Bodies of other
-/// types are skipped. Reads header versions 1 and 2 (protocols 1 to 3); skips metadata.
+/// types are skipped. Reads header versions 1 and 2 (protocols 1 to 3); skips metadata. A POSITION is given as the
+/// TRANSFORM of the same pose; one without an orientation is passed on as another message.
 class MessageReader {
  public:
   static constexpr std::size_t kKept = 65536;
-  /// @param longest [bytes] longest body of any type; large, because images may be sent
-  explicit MessageReader(std::uint64_t longest = std::uint64_t{1} << 28) : longest_(longest) {}
+  struct Options {
+    std::uint64_t longest = std::uint64_t{1} << 28;  ///< [bytes] longest body of any type; large, because of images
+    bool checksums = true;                           ///< whether a body has to match its checksum
+  };
+  MessageReader() = default;
+  explicit MessageReader(const Options& options) : options_(options) {}
 
   /// Decodes the next bytes and passes complete messages to `sink`.
   /// @return an error if the bytes are not a message; where the next message starts is then unknown, so the connection
@@ -39,7 +48,7 @@ class MessageReader {
   Result<> read_header();
   Result<> read_body(Incoming& message);
 
-  std::uint64_t longest_;
+  Options options_;
   std::array<std::uint8_t, 58> header_{};
   std::size_t header_filled_ = 0;
   Incoming message_;

@@ -6,7 +6,7 @@ namespace stylet::igtl {
 void PoseInput::hear(ConnectionId from, const Incoming& message, Clock::time_point now) {
   if (message.kind == Incoming::Kind::status) {
     hear_status(from, message.name, message.code);
-  } else if (message.kind == Incoming::Kind::transform && message.name == name_) {
+  } else if (message.kind == Incoming::Kind::pose && message.name == name_) {
     hear_pose(from, message.matrix, now);
   } else {
     ++counts_.other_messages;

@@ -40,6 +40,14 @@ Result<PatientInput> read_input(const fs::path& path, const MeshReadOptions& mes
     if (!segmentation) return segmentation.error();
     is_mask = *segmentation;
   }
+  const bool in_mm = is_mask || *kind == FileKind::dicom || *kind == FileKind::contour_json;
+  if (mesh_options.scale > 0.0 && in_mm) {
+    return input_error(path.string(),
+                       fmt::format("--scale or patient.scale has no meaning for {}, whose coordinates are in mm by "
+                                   "definition",
+                                   is_mask ? "a mask" : "contours"),
+                       "Leave it out; if the coordinates are in another unit, convert the file");
+  }
   if (mask_options.volume > 0 && !is_mask) {
     return input_error(path.string(),
                        fmt::format("this is {}; only a mask has volumes to choose from", detail::name_of(*kind)),
@@ -68,6 +76,10 @@ Result<PatientInput> read_input(const fs::path& path, const MeshReadOptions& mes
       return as_input(read_surfaces(path, mesh_options));
     case FileKind::unknown:
       break;
+  }
+  if (path.extension() == ".toml") {
+    return input_error(path.string(), "this is a scenario (TOML) by its name, and a patient's file is expected",
+                       "Run it with stylet insert, or give the file that it names as source below [patient]");
   }
   return input_error(path.string(), "the format is not recognised", detail::readable_formats());
 }

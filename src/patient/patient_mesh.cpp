@@ -5,6 +5,7 @@
 #include "stylet/geom/quality.hpp"
 #include "stylet/geom/structure_names.hpp"
 #include "stylet/io/input.hpp"
+#include "stylet/mesher/structures.hpp"
 #include "stylet/patient/patient_file.hpp"
 #include "stylet/phantom/phantom.hpp"
 
@@ -54,13 +55,42 @@ bool has_target(const TetMesh& mesh) {
                      [](const std::string& r) { return is_target_region(r) || r.starts_with("label_"); });
 }
 
-Result<MeshedAnatomy> model_of(const ContourSet& contours, const MeshOptions& options, const Scenario&,
+/// Checks, before the mesh is made, that the regions to which a scenario refers can be in it.
+/// @param choice of the structures, or of the labels
+Result<> check_regions(const StructureChoice& choice, const Scenario& scenario) {
+  std::vector<std::string> regions;
+  const auto add = [&](const std::string& region) {
+    if (!region.empty() && std::find(regions.begin(), regions.end(), region) == regions.end())
+      regions.push_back(region);
+  };
+  for (const StructureUse& use : choice.uses) add(use.region);
+  for (const std::string& tissue : known_tissues()) {  // that the mesher adds
+    if (is_surrounding(tissue) || tissue == "band" || tissue == "rectal_lumen") add(tissue);
+  }
+  for (const auto& [name, parameters] : scenario.tissue) {
+    if (std::find(regions.begin(), regions.end(), name) != regions.end()) continue;
+    const std::string near = nearest_name(name, regions);
+    return input_error(fmt::format("tissue.{}", name),
+                       fmt::format("the patient has no region '{}' (there are: {})", name, fmt::join(regions, ", ")),
+                       fmt::format("{} patient.regions sets the names of structures and labels",
+                                   near.empty() ? "Use one of these names;" : fmt::format("Did you mean '{}'?", near)));
+  }
+  return Ok{};
+}
+
+Result<MeshedAnatomy> model_of(const ContourSet& contours, const MeshOptions& options, const Scenario& scenario,
                                const Progress& progress) {
+  const Result<StructureChoice> choice = choose_structures(contours, options);
+  if (!choice) return choice.error();
+  if (Result<> known = check_regions(*choice, scenario); !known) return known.error();
   return mesh_contours(contours, options, progress);
 }
 
-Result<MeshedAnatomy> model_of(const LabelImage& image, const MeshOptions& options, const Scenario&,
+Result<MeshedAnatomy> model_of(const LabelImage& image, const MeshOptions& options, const Scenario& scenario,
                                const Progress& progress) {
+  const Result<StructureChoice> choice = choose_structures(image, options);
+  if (!choice) return choice.error();
+  if (Result<> known = check_regions(*choice, scenario); !known) return known.error();
   return mesh_labels(image, options, progress);
 }
 
@@ -109,7 +139,7 @@ Result<MeshedAnatomy> mesh_patient(const Scenario& scenario, const Progress& pro
   options.layers = scenario.anatomy;
   if (scenario.patient.source == "phantom" && scenario.patient.volume > 0)
     return input_error("patient.volume", "the phantom is not a mask with volumes to choose from", "Leave it out");
-  if (scenario.patient.source == "phantom") return mesh_contours(demo_patient(), options, progress);
+  if (scenario.patient.source == "phantom") return model_of(demo_patient(), options, scenario, progress);
   const Result<PatientFile> file = read_patient(scenario.patient.source, {.scale = scenario.patient.scale}, options,
                                                 {.volume = scenario.patient.volume});
   if (!file) return file.error();

@@ -60,18 +60,18 @@ std::vector<std::string> PreparedModel::warnings() const {
 Result<PreparedModel> prepare_model(const Scenario& scenario, const Progress& progress, const std::string& where) {
   if (Result<> checked = check_has_insertion(scenario, where); !checked) return checked.error();
   std::vector<std::vector<MotionSample>> motions;
+  PreparedModel prepared;
   for (const InsertionPlan& plan : scenario.insertions) {
     motions.emplace_back();
     if (plan.motion.empty()) continue;
-    Result<std::vector<MotionSample>> motion = read_motion_csv(plan.motion);
+    Result<std::vector<MotionSample>> motion = read_motion_csv(plan.motion, &prepared.notes);
     if (!motion) return motion.error();
     motions.back() = std::move(*motion);
   }
-  PreparedModel prepared;
   const double start = now_s();
   Result<MeshedAnatomy> patient = mesh_patient(scenario, progress);
   if (!patient) return patient.error();
-  prepared.notes = patient->report.notes;
+  prepared.notes.insert(prepared.notes.end(), patient->report.notes.begin(), patient->report.notes.end());
   const double meshed = now_s();
   prepared.mesh_s = meshed - start;
   auto model = Model::compile(scenario, std::move(patient->mesh), where, motions, progress);

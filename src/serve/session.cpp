@@ -130,6 +130,7 @@ struct Session::Parts {
   void carry_out(const Request& request);
   void tick(double dt_s);
   void show_companion();
+  std::string companion_trouble;  ///< what the terminal was told about the companion last
   void heed_room();
   [[nodiscard]] RoomReport look_after_room() const;
   void show_inside();
@@ -860,6 +861,10 @@ void Session::Parts::carry_out(const Request& request) {
 
 void Session::Parts::show_companion() {
   live->show_to(*settings.companion);
+  if (std::string trouble = settings.companion->trouble(); trouble != companion_trouble) {
+    if (!trouble.empty() && settings.say) settings.say(settings.companion->name() + ": " + trouble);
+    companion_trouble = std::move(trouble);
+  }
   std::string problem = live->device_problem(*settings.companion);
   if (problem == status.device_problem) return;
   status.device_problem = std::move(problem);

@@ -12,6 +12,7 @@
 #include "stylet/needle/make_needle.hpp"
 #include "stylet/sim/cutting_lag.hpp"
 #include "stylet/sim/hole_map.hpp"
+#include "stylet/sim/plausible.hpp"
 #include "tissue_choice.hpp"
 
 #include <fmt/format.h>
@@ -267,6 +268,7 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
     model->laws_.push_back(laws);
   }
 
+  model->warnings_ = warnings_before_start(scenario);
   if (std::string flat = nearly_flat_warning(mesh); !flat.empty()) model->warnings_.push_back(std::move(flat));
 
   // The insertions are planned before the supports, because outer faces near an entry stay free.
@@ -274,6 +276,7 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
   std::vector<PlannedInsertion> insertions;
   std::vector<Vec3> entries;
   std::vector<Vec3> directions;
+  double recorded_s = 0.0;
   {
     const Locator locator(mesh, topology);
     for (std::size_t i = 0; i < scenario.insertions.size(); ++i) {
@@ -281,8 +284,14 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
       auto planned = is_recorded ? follow(motions[i], i, scenario, locator, where)
                                  : plan_insertion(scenario.insertions[i], i, scenario, locator, model->target_, where);
       if (!planned) return planned.error();
+      if (std::string head = from_the_head(fmt::format("insertion[{}]", i), planned->direction);
+          is_recorded && !head.empty())
+        model->warnings_.push_back(std::move(head));
+      if (is_recorded) recorded_s += planned->motion.duration_s();
       insertions.push_back(std::move(*planned));
     }
+    if (std::string takes_long = recorded_s > 0.0 ? long_work_warning(scenario, recorded_s) : ""; !takes_long.empty())
+      model->warnings_.push_back(std::move(takes_long));
     auto staying = plan_staying(scenario, locator, model->target_, where);
     if (!staying) return staying.error();
     model->insertions_ = {std::move(insertions), *std::move(staying)};

@@ -3,6 +3,7 @@
 
 #include "scenario_table.hpp"
 #include "stylet/core/nearest_name.hpp"
+#include "stylet/sim/plausible.hpp"
 
 #include <fmt/format.h>
 
@@ -120,6 +121,25 @@ std::string cure_for(const ScenarioKey& key) {
   return {};
 }
 
+/// What to add to the cure for a text in place of a number: "20cm" and "0,06" have the number in another notation.
+std::string about_notation(const ScenarioValue& value, const ScenarioKey& key) {
+  const bool number = key.type == Type::number || key.type == Type::integer;
+  const bool begins_with_one = value.type == Type::text && value.text.find_first_of("0123456789") < 2;
+  if (!number || !begins_with_one) return {};
+  return value.text.find(',') != std::string::npos ? ", with a decimal point instead of the comma"
+                                                   : ", the number alone, without a unit";
+}
+
+/// What to add to the cure for a number out of range: the unit in which it probably is.
+std::string probable_unit(const ScenarioValue& value, const ScenarioKey& key) {
+  for (const PlausibleRange& range : plausible_ranges()) {
+    if (range.key != key.path) continue;
+    const std::string& advice = value.number > range.high ? range.above : range.below;
+    return advice.empty() ? std::string() : ". " + advice;
+  }
+  return {};
+}
+
 /// "needle.length_mm" → "needle", "length_mm"; "name" → "", "name".
 std::pair<std::string, std::string> table_and_leaf(const std::string& pattern) {
   const auto dot = pattern.rfind('.');
@@ -168,13 +188,15 @@ Result<> store(Scenario& scenario, const ScenarioEntry& entry, const ScenarioSlo
                const ScenarioValue& value, const std::string& where) {
   const std::string stated = path + " = " + to_string(value);
   if (!fits(value, entry.key.type)) {
-    return input_error(where, stated + " is not " + type_name(entry.key.type), cure_for(entry.key));
+    return input_error(where, stated + " is not " + type_name(entry.key.type),
+                       cure_for(entry.key) + about_notation(value, entry.key));
   }
   if (value.type == Type::number && !std::isfinite(value.number)) {
     return input_error(where, stated + " is not finite", cure_for(entry.key));
   }
   const std::string refusal = entry.store(scenario, slot, value);
-  if (!refusal.empty()) return input_error(where, stated + " is " + refusal, cure_for(entry.key));
+  if (!refusal.empty())
+    return input_error(where, stated + " is " + refusal, cure_for(entry.key) + probable_unit(value, entry.key));
   return Ok{};
 }
 

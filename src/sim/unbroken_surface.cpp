@@ -18,6 +18,7 @@ void UnbrokenSurface::add(const Simulation& simulation) {
   for (const Event& event : simulation.new_events()) {
     if (event.kind == EventKind::puncture || event.kind == EventKind::region_entered) furthest_.reset();
   }
+  if (simulation.last_step().tip_state == TipState::cutting) furthest_.reset();
   if (simulation.last_step().tip_state != TipState::pressing) return;
   auto now = pressed_now(simulation);
   if (now && (!furthest_ || now->past_mm > furthest_->past_mm)) furthest_ = std::move(now);
@@ -42,19 +43,40 @@ std::optional<UnbrokenSurface::Pressed> UnbrokenSurface::pressed_now(const Simul
   };
   const int before = region_at(-kBeside_mm);
   const int behind = region_at(kBeside_mm);
-  if (behind < 0 || before == behind) return {};
-  const double breaks_N = membrane_force(model.laws(), before, behind);
-  if (!(breaks_N > 0.0) || !std::isfinite(breaks_N)) return {};
-  return Pressed{mesh.regions[static_cast<std::size_t>(behind)], (step.tip_mm - at_rest).dot(axis),
-                 tip->force.dot(axis), breaks_N};
+  if (behind < 0) return {};
+  const auto laws_of = [&](int region) -> const RegionLaws& { return model.laws()[static_cast<std::size_t>(region)]; };
+  const auto name_of = [&](int region) { return mesh.regions[static_cast<std::size_t>(region)]; };
+  Pressed pressed{.region = name_of(behind),
+                  .past_mm = (step.tip_mm - at_rest).dot(axis),
+                  .force_N = tip->force.dot(axis),
+                  .at_surface = before != behind};
+  // A membrane holds only if it bears more than the tissue behind it takes to be cut.
+  const double membrane_N = pressed.at_surface ? membrane_force(model.laws(), before, behind) : 0.0;
+  pressed.by_cutting = laws_of(behind).cutting_N >= membrane_N;
+  pressed.needed_N = pressed.by_cutting ? laws_of(behind).cutting_N : membrane_N;
+  const bool of_behind = pressed.by_cutting || before < 0 || laws_of(behind).puncture_N == membrane_N;
+  pressed.owner = name_of(of_behind ? behind : before);
+  if (!(pressed.needed_N > 0.0) || !std::isfinite(pressed.needed_N)) return {};
+  return pressed;
 }
 
 std::optional<std::string> UnbrokenSurface::warning() const {
   if (!furthest_ || furthest_->past_mm <= kFar_mm) return {};
+  const Pressed& p = *furthest_;
+  const std::string key = fmt::format("tissue.{}.{}", p.owner, p.by_cutting ? "cutting_N" : "puncture_N");
+  if (!p.at_surface) {
+    return fmt::format(
+        "The tip pressed the tissue of the {} {:.1f} mm ahead of itself with {:.2f} N, but {:.2f} N are needed to cut "
+        "it ({}, see stylet insert --print-tissues): the needle did not go on in the {}. Lower {}, or raise young_kPa "
+        "or stiffening of this tissue.",
+        p.region, p.past_mm, p.force_N, p.needed_N, key, p.region, key);
+  }
   return fmt::format(
-      "The tip pressed the surface of the {} {:.1f} mm inwards with {:.2f} N, but {:.2f} N are needed to break it: the "
-      "needle did not enter the {}. Lower puncture_N, or raise young_kPa or stiffening on either side of the surface.",
-      furthest_->region, furthest_->past_mm, furthest_->force_N, furthest_->breaks_N, furthest_->region);
+      "The tip pressed the surface of the {} {:.1f} mm inwards with {:.2f} N, but {:.2f} N are needed to {} ({}, see "
+      "stylet insert --print-tissues): the needle did not enter the {}. Lower {}, or raise young_kPa or stiffening on "
+      "either side of the surface.",
+      p.region, p.past_mm, p.force_N, p.needed_N, p.by_cutting ? "cut into the tissue behind it" : "break it", key,
+      p.region, key);
 }
 
 }  // namespace stylet

@@ -6,10 +6,11 @@ import math
 import os
 import signal
 import socket
+import struct
 import subprocess
 import unittest
 
-from igtl_client import Client
+from igtl_client import Client, message
 from igtl_server import BASE, HANDLE, LinkedServe, along, apart
 from insert_case import SMALL
 from live_server import PATIENCE_S
@@ -73,6 +74,47 @@ class ServeIgtl(LinkedServe):
         for _ in range(30):
             client.send_transform(HANDLE, along(start, 5.0))
             self.assertLess(apart(client.transform(BASE), start), 1e-3)
+
+    def test_says_why_a_connection_was_closed_and_what_is_not_used(self):
+        server, port = self.link("--hand", "igtl")
+        whole = message("TRANSFORM", HANDLE, struct.pack(">12f", *(1, 0, 0, 0, 1, 0, 0, 0, 1, 10, 20, -30)))
+        # Checksum 0, header version 3, a type that is not used, and a name that is not used.
+        for sent, says in ((whole[:50] + bytes(8) + whole[58:], ["checksum, which is 0", "--igtl-no-checksum"]),
+                           (b"\0\3" + whole[2:], ["header of version 3, which is not read", "version 1 or 2"])):
+            bad = self.client(port)
+            bad.connection.sendall(sent)
+            with self.assertRaises(ConnectionError):
+                while True:
+                    bad.receive()
+            self.await_said(server, says)
+        server, port = self.link("--hand", "igtl")
+        for kind, name in (("QTDATA", "Tracker"), ("TRANSFORM", "StylusToTracker")):
+            self.client(port).connection.sendall(message(kind, name, whole[58:]))
+            self.await_said(server, [f"{kind} '{name}' is received and not used", HANDLE])
+
+    def await_said(self, server, texts):
+        """Reads lines of the terminal until one has all texts."""
+        while True:
+            line = server.stderr.readline()
+            self.assertTrue(line, "the server has ended")
+            if all(text in line for text in texts):
+                return
+
+    def test_takes_messages_without_checksums_if_told_to_and_positions(self):
+        _, port = self.link("--hand", "igtl", "--igtl-no-checksum")
+        display, tracker = self.client(port), self.client(port)
+        start = display.transform(BASE)
+        x, y, z = start[:3]
+        # The quaternion of a needle that goes superior in RAS, with its x axis to the patient's left.
+        self.assertLess(abs(z[2] - 1.0), 1e-6)
+        half = math.atan2(x[1], x[0]) / 2.0
+        for step in range(1, 6):
+            at = along(start, 1.0 * step)[3]
+            body = struct.pack(">7f", *at, 0.0, 0.0, math.sin(half), math.cos(half))
+            position = message("POSITION", HANDLE, body)
+            tracker.connection.sendall(position[:50] + bytes(8) + position[58:])
+            while apart(display.transform(BASE), along(start, 1.0 * step)) > 0.01:
+                tracker.connection.sendall(position[:50] + bytes(8) + position[58:])
 
     def test_is_not_ready_while_a_recording_is_replayed(self):
         server, _ = self.start("case.toml", *SMALL)

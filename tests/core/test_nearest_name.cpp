@@ -29,6 +29,18 @@ TEST(NearestName, finds_the_name_that_was_meant) {
   EXPECT_EQ(nearest_name("cuting_N", known), "cutting_N");
 }
 
+TEST(NearestName, finds_a_name_by_one_of_its_words) {
+  const std::vector<std::string> known{"retract_speed_mm_per_s",  "speed_mm_per_s", "depth_mm", "young_kPa", "bow_mm",
+                                       "friction_static_N_per_m", "dwell_s"};
+  EXPECT_EQ(nearest_name("speed", known), "speed_mm_per_s") << "the shortest of those with the word";
+  EXPECT_EQ(nearest_name("retract_speed", known), "retract_speed_mm_per_s");
+  EXPECT_EQ(nearest_name("depth", known), "depth_mm");
+  EXPECT_EQ(nearest_name("young_modulus", known), "young_kPa");
+  EXPECT_EQ(nearest_name("frction", known), "friction_static_N_per_m") << "a word with a typing error";
+  EXPECT_EQ(nearest_name("bow", known), "bow_mm");
+  EXPECT_EQ(nearest_name("time_s", known), "") << "units are no words";
+}
+
 TEST(NearestName, suggests_nothing_when_nothing_is_near) {
   const std::vector<std::string> known{"young_kPa", "poisson"};
   EXPECT_EQ(nearest_name("temperature", known), "");

@@ -4,6 +4,7 @@
 #include "library_messages.hpp"
 
 #include <gtest/gtest.h>
+#include <igtlPositionMessage.h>
 #include <igtlStringMessage.h>
 #include <igtl_util.h>
 
@@ -80,7 +81,7 @@ TEST(MessageReader, reads_what_the_library_sends_however_it_is_cut) {
     const Read r = read(bytes, piece);
     ASSERT_TRUE(r.result) << r.result.error().message();
     ASSERT_EQ(r.messages.size(), 4U) << piece;
-    EXPECT_EQ(r.messages[0].kind, Kind::transform);
+    EXPECT_EQ(r.messages[0].kind, Kind::pose);
     EXPECT_EQ(r.messages[0].name, "HandleToReference");
     EXPECT_EQ(r.messages[0].matrix, kMatrix);
     EXPECT_EQ(r.messages[1].kind, Kind::other);
@@ -131,8 +132,8 @@ TEST(MessageReader, a_length_beyond_the_limit_is_refused_before_anything_is_kept
   EXPECT_FALSE(read(transform).result) << "an image may be that long, a matrix may not";
   Raw image = library_string("Image");
   put(image, 42, 1000, 8);
-  EXPECT_TRUE(read(image, 1 << 20, MessageReader(1000)).result);
-  EXPECT_FALSE(read(image, 1 << 20, MessageReader(999)).result);
+  EXPECT_TRUE(read(image, 1 << 20, MessageReader({.longest = 1000})).result);
+  EXPECT_FALSE(read(image, 1 << 20, MessageReader({.longest = 999})).result);
 }
 
 TEST(MessageReader, any_wrong_bit_of_a_body_is_seen) {
@@ -204,4 +205,64 @@ TEST(MessageReader, no_bytes_whatever_do_harm) {
     }
   }
   EXPECT_GT(refused, 1000);
+}
+
+namespace {
+
+Raw library_position(const char* name, const Eigen::Quaternionf& q, int pack) {
+  auto message = ::igtl::PositionMessage::New();
+  message->SetDeviceName(name);
+  message->SetPackType(pack);
+  message->SetPosition(10, 20, -30);
+  message->SetQuaternion(q.x(), q.y(), q.z(), q.w());
+  return packed(*message);
+}
+
+}  // namespace
+
+TEST(MessageReader, a_position_with_a_quaternion_is_a_pose) {
+  const Eigen::Quaternionf q(Eigen::AngleAxisf(0.5F, Eigen::Vector3f(1, 2, 2).normalized()));
+  for (const int pack : {::igtl::PositionMessage::ALL, ::igtl::PositionMessage::WITH_QUATERNION3}) {
+    const Read r = read(library_position("HandleToReference", q, pack));
+    ASSERT_TRUE(r.result) << r.result.error().message();
+    ASSERT_EQ(r.messages.size(), 1U);
+    EXPECT_EQ(r.messages[0].kind, Kind::pose);
+    EXPECT_EQ(r.messages[0].type, "POSITION");
+    const Eigen::Map<const Eigen::Matrix<float, 3, 4>> matrix(r.messages[0].matrix.data());
+    EXPECT_LT((matrix.leftCols<3>() - q.toRotationMatrix()).norm(), 1e-5F);
+    EXPECT_EQ(matrix.col(3), Eigen::Vector3f(10, 20, -30));
+  }
+}
+
+TEST(MessageReader, a_position_without_an_orientation_is_no_pose) {
+  const Read r = read(
+      library_position("HandleToReference", Eigen::Quaternionf::Identity(), ::igtl::PositionMessage::POSITION_ONLY));
+  ASSERT_TRUE(r.result);
+  EXPECT_EQ(r.messages.at(0).kind, Kind::other);
+  EXPECT_EQ(r.messages[0].type, "POSITION");
+  const Read stretched =
+      read(library_position("HandleToReference", Eigen::Quaternionf(2, 0, 0, 0), ::igtl::PositionMessage::ALL));
+  EXPECT_EQ(stretched.messages.at(0).kind, Kind::other);
+}
+
+TEST(MessageReader, a_wrong_checksum_is_taken_where_checksums_are_off) {
+  Raw bytes = library_transform("HandleToReference", kMatrix);
+  put(bytes, 50, 0, 8);
+  const Read refused = read(bytes);
+  ASSERT_FALSE(refused.result);
+  const std::string why = refused.result.error().message();
+  EXPECT_NE(why.find("TRANSFORM 'HandleToReference' whose body does not match its checksum, which is 0"),
+            std::string::npos)
+      << why;
+  const Read taken = read(bytes, 1 << 20, MessageReader({.checksums = false}));
+  ASSERT_TRUE(taken.result);
+  EXPECT_EQ(taken.messages.at(0).matrix, kMatrix);
+}
+
+TEST(MessageReader, another_version_of_the_header_is_refused_with_the_versions_that_are_read) {
+  Raw bytes = library_transform("HandleToReference", kMatrix);
+  put(bytes, 0, 3, 2);
+  const std::string why = read(bytes).result.error().message();
+  EXPECT_NE(why.find("a header of version 3, which is not read"), std::string::npos) << why;
+  EXPECT_NE(why.find("header version 1 or 2"), std::string::npos) << why;
 }

@@ -20,7 +20,7 @@ struct Handle {
   Handle() { input.feed(channel); }
   void pose(ConnectionId from, const RasMatrix& m, const std::string& name = "Handle") {
     Incoming message;
-    message.kind = Incoming::Kind::transform;
+    message.kind = Incoming::Kind::pose;
     message.name = name;
     message.matrix = m;
     input.hear(from, message, now);

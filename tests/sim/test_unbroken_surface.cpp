@@ -34,22 +34,33 @@ TEST(UnbrokenSurface, a_capsule_that_is_pressed_far_in_and_never_breaks_is_told_
   const std::string said = warnings_of(with("prostate", 50.0));
   EXPECT_SAYS(said, "pressed the surface of the prostate");
   EXPECT_SAYS(said, "but 50.00 N are needed to break it");
-  EXPECT_SAYS(said, "Lower puncture_N");
+  EXPECT_SAYS(said, "Lower tissue.prostate.puncture_N");
 }
 
 TEST(UnbrokenSurface, skin_that_never_breaks_is_told_of_too) {
   EXPECT_SAYS(warnings_of(with("body", 50.0)), "pressed the surface of the body");
 }
 
+TEST(UnbrokenSurface, the_force_that_holds_is_named_where_it_is_that_of_cutting) {
+  Scenario s = with("body", 2.8);
+  s.tissue["body"].cutting_N = 50.0;
+  const std::string of_skin = warnings_of(s);
+  EXPECT_SAYS(of_skin, "but 50.00 N are needed to cut into the tissue behind it (tissue.body.cutting_N");
+  EXPECT_SAYS(of_skin, "Lower tissue.body.cutting_N");
+  s = with("prostate", 1.0);
+  s.tissue["prostate"].cutting_N = 50.0;
+  EXPECT_SAYS(warnings_of(s), "Lower tissue.prostate.cutting_N");
+}
+
 TEST(UnbrokenSurface, nothing_is_said_of_surfaces_that_break) {
-  EXPECT_FALSE(test::contains(warnings_of(box_scenario()), "pressed the surface"));
+  EXPECT_FALSE(test::contains(warnings_of(box_scenario()), "The tip pressed"));
 }
 
 /// The distance in the warning is the distance of the tip past the rest position of the surface.
 TEST(UnbrokenSurface, the_way_is_no_longer_than_the_base_went_in) {
   Scenario s = with("body", 50.0);
   s.insertions[0].depth_mm = 9.0;
-  EXPECT_FALSE(test::contains(warnings_of(s), "pressed the surface"));
+  EXPECT_FALSE(test::contains(warnings_of(s), "The tip pressed"));
   s.insertions[0].depth_mm = 12.0;
   EXPECT_SAYS(warnings_of(s), "pressed the surface of the body 1");
 }

@@ -39,6 +39,7 @@ struct LinkSettings {
   double surface_hz = 10.0;    ///< [1/s] 0.1…poses_hz, highest rate of the messages with the surface
   double images_hz = 30.0;     ///< [1/s] 0.1…poses_hz, highest rate of the images
   double fresh_s = 0.25;       ///< [s] 0.01…10; the force of a picture older than this is not sent
+  bool checksums = true;       ///< whether received messages have to match their checksums; some programs send none
   int max_connections = 8;     ///< 1…64, of a server; further connections are refused
   double give_up_s = 10.0;     ///< [s] 0.1…600; a connection that accepts no data for this time is closed
   double retry_s = 0.25;       ///< [s] 0.01…60, first pause of a client before it connects again; each pause doubles
@@ -57,7 +58,8 @@ struct LinkState {
   std::int64_t of_others = 0;       ///< received poses of the handle while another connection had the handle
   std::int64_t probe_poses = 0;     ///< usable poses of the probe that were received
   std::int64_t other_messages = 0;  ///< received messages of other types and names
-  std::int64_t sent = 0;      ///< messages queued for connections: bundles of poses and force, surfaces, heartbeats
+  std::string unused;     ///< type and name of the last of these that has a pose, or has the name of one; may be empty
+  std::int64_t sent = 0;  ///< messages queued for connections: bundles of poses and force, surfaces, heartbeats
   std::int64_t dropped = 0;   ///< queued messages that newer ones replaced before they were sent
   std::int64_t garbage = 0;   ///< connections closed because the received bytes were not OpenIGTLink
   std::int64_t given_up = 0;  ///< connections closed because they accepted no data

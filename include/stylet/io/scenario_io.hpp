@@ -33,11 +33,15 @@ std::string to_toml(const Scenario& scenario);
 /// out and explained with unit, default, range and meaning, grouped by table.
 std::string schema_text();
 
-/// Reads a recorded base motion: CSV with the header time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz; position of the needle's base
-/// [mm] LPS, rotation of the needle (its local z is the axis, base to tip) as a unit quaternion.
+/// Reads a recorded base motion: CSV whose header names the columns time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz, in any order;
+/// position of the needle's base [mm] LPS, rotation of the needle (its local z is the axis, base to tip) as a unit
+/// quaternion with the real part qw.
+/// @param notes gets a sentence if the quaternion's order may be another than the header says; may be null
 /// Errors: no such file, wrong header, a field missing or not a finite number, times not increasing or negative, a
-/// quaternion whose norm differs from 1 by more than 1e-3, fewer than two samples, positions, distances or speeds that
+/// quaternion whose norm differs from 1 by more than 1e-3, fewer than two samples, quaternions that make sense in
+/// another order only, positions, distances or speeds that
 /// indicate other units than mm and s. Each error names the line and the column.
-Result<std::vector<MotionSample>> read_motion_csv(const std::filesystem::path& path);
+Result<std::vector<MotionSample>> read_motion_csv(const std::filesystem::path& path,
+                                                  std::vector<std::string>* notes = nullptr);
 
 }  // namespace stylet

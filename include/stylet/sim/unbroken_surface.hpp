@@ -8,8 +8,8 @@
 
 namespace stylet {
 
-/// Follows one insertion and detects a surface (skin or capsule) that the tip pushes far ahead of itself without
-/// breaking it. Without a warning nobody would notice that the needle does not reach the tissue behind that surface.
+/// Follows one insertion and detects a surface (skin or capsule) or tissue that the tip pushes far ahead of itself
+/// without breaking or cutting it. Without a warning nobody would notice that the needle does not get behind it.
 class UnbrokenSurface {
  public:
   /// [mm] Distance of the tip past the rest position of an unbroken surface, above which there is a warning.
@@ -26,8 +26,11 @@ class UnbrokenSurface {
   struct Pressed {
     std::string region;
     double past_mm = 0.0;
-    double force_N = 0.0;   ///< force of the tip, along the needle
-    double breaks_N = 0.0;  ///< force that would break the surface
+    double force_N = 0.0;     ///< force of the tip, along the needle
+    bool at_surface = true;   ///< false: within the region, whose tissue is not cut
+    bool by_cutting = false;  ///< the tissue's cutting force holds the tip, not a membrane
+    double needed_N = 0.0;    ///< force that would break the surface or cut the tissue
+    std::string owner;        ///< region whose cutting or puncture force this is
   };
   [[nodiscard]] static std::optional<Pressed> pressed_now(const Simulation& simulation);
 

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "detail/input_file.hpp"
 
+#include "stylet/core/nearest_name.hpp"
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -28,6 +32,70 @@ const char* what_it_is(fs::file_type type) {
   }
 }
 
+/// The names in a folder; not all of them if it has very many.
+std::vector<std::string> names_in(const fs::path& folder) {
+  constexpr std::size_t most = 10'000;
+  std::vector<std::string> names;
+  std::error_code code;
+  for (fs::directory_iterator at(folder, code), end; !code && at != end && names.size() < most; at.increment(code))
+    names.push_back(at->path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string small(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+/// The name without its extension; that of "case.nii.gz" is "case".
+std::string stem_of(const std::string& name) { return small(name.substr(0, name.find('.', 1))); }
+
+/// The names that a mistyped one may stand for, best first: other case, other or missing extension, typing errors.
+std::vector<std::string> near_names(const std::string& mistyped, const std::vector<std::string>& names) {
+  constexpr std::size_t most = 3;
+  std::vector<std::string> near;
+  const auto add = [&](const std::string& name) {
+    if (near.size() < most && !name.empty() && std::find(near.begin(), near.end(), name) == near.end())
+      near.push_back(name);
+  };
+  for (const std::string& name : names)
+    if (small(name) == small(mistyped)) add(name);
+  if (near.empty()) {
+    for (const std::string& name : names)
+      if (stem_of(name) == stem_of(mistyped)) add(name);
+    add(nearest_name(mistyped, names));
+  }
+  return near;
+}
+
+/// "; did you mean 'plan.dcm'?" from the names of the folder in which a path leads nowhere; empty if none is near.
+std::string did_you_mean(const fs::path& path) {
+  // The first part of the path that does not exist is the one that is mistyped.
+  fs::path folder;
+  std::error_code code;
+  for (auto part = path.begin(); part != path.end(); ++part) {
+    const fs::path next = folder / *part;
+    if (fs::exists(next, code)) {
+      folder = next;
+      continue;
+    }
+    if (fs::is_regular_file(folder, code)) return fmt::format("; '{}' is a file, not a folder", folder.string());
+    const bool is_last = std::next(part) == path.end();
+    const auto near = near_names(part->string(), names_in(folder.empty() ? fs::path(".") : folder));
+    std::vector<std::string> said;
+    fs::path rest;
+    for (auto later = std::next(part); later != path.end(); ++later) rest /= *later;
+    for (const std::string& name : near) {
+      const fs::path whole = folder / name / rest;  // the file itself, if only the folder's name is wrong
+      said.push_back(fmt::format("'{}'", (is_last || !fs::exists(whole, code) ? folder / name : whole).string()));
+    }
+    const std::string lost = is_last ? "" : fmt::format(", because there is no folder '{}'", next.string());
+    return said.empty() ? lost : fmt::format("{}; did you mean {}?", lost, fmt::join(said, " or "));
+  }
+  return {};
+}
+
 /// Whether `inner` is in `folder` or below it. Both paths must be free of symbolic links.
 bool is_below(const fs::path& inner, const fs::path& folder) {
   const auto [rest, unused] = std::mismatch(folder.begin(), folder.end(), inner.begin(), inner.end());
@@ -41,7 +109,8 @@ Result<> check_input_file(const fs::path& path) {
   std::error_code code;
   const fs::file_status status = fs::status(path, code);
   if (!fs::exists(status)) {
-    return input_error(where, code && code != std::errc::no_such_file_or_directory ? code.message() : "no such file",
+    const bool absent = !code || code == std::errc::no_such_file_or_directory || code == std::errc::not_a_directory;
+    return input_error(where, absent ? "no such file" + did_you_mean(path) : code.message(),
                        "Check the name and the folder");
   }
   if (fs::is_directory(status)) return input_error(where, "this is a folder, a file is expected", "Name a file in it");

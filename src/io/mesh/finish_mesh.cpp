@@ -2,6 +2,7 @@
 #include "mesh/raw_mesh.hpp"
 
 #include "detail/reach.hpp"
+#include "stylet/geom/plausible_size.hpp"
 
 #include <fmt/format.h>
 
@@ -11,33 +12,6 @@
 namespace stylet::detail {
 
 namespace {
-
-// A mesh without a stated unit must have a plausible size for the tissue around a needle.
-constexpr double smallest_believable_mm = 10.0;
-constexpr double largest_believable_mm = 2000.0;
-
-/// Error if the size of a mesh without a known unit shows that the unit is not mm.
-Result<> check_unit(const std::vector<Vec3>& nodes, const std::string& source) {
-  Eigen::AlignedBox3d box;
-  for (const Vec3& x : nodes) box.extend(x);
-  if (nodes.empty() || !box.sizes().allFinite()) return Ok{};  // check_mesh() reports these errors
-  const double extent = box.sizes().maxCoeff();
-  if (extent >= smallest_believable_mm && extent <= largest_believable_mm) return Ok{};
-  const auto believable = [&](double scale) { return extent * scale >= 40.0 && extent * scale <= 1500.0; };
-  std::string cure = "State the unit: --scale S with S = mm per file unit";
-  if (extent > largest_believable_mm) {
-    cure = "Pass --scale 0.001 if they are in micrometres, otherwise --scale S with S = mm per file unit";
-  } else if (believable(1000.0) && extent <= 1.5) {
-    cure = "Pass --scale 1000 if they are in metres, as is probable, otherwise --scale S with S = mm per file unit";
-  } else if (believable(10.0)) {
-    cure = "Pass --scale 10 if they are in centimetres, otherwise --scale S with S = mm per file unit";
-  }
-  return input_error(source,
-                     fmt::format("the mesh is {:.4g} units across, which is not plausible in mm ({:.0f} mm to {:.0f} "
-                                 "mm is expected), so its coordinates are not in mm",
-                                 extent, smallest_believable_mm, largest_believable_mm),
-                     cure);
-}
 
 /// Drops nodes that only other elements than tetrahedra use. Nodes without any element stay and are an error later.
 Index drop_foreign_nodes(RawMesh& raw) {
@@ -131,8 +105,10 @@ Result<MeshWithNotes> finish_mesh(RawMesh raw, const std::string& source, const 
     x *= scale;
     if (raw.ras) x.head<2>() *= -1.0;
   }
-  if (options.scale == 0.0 && raw.unit_mm == 0.0) {
-    if (Result<> unit = check_unit(raw.nodes, source); !unit) return unit.error();
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : raw.nodes) box.extend(x);
+  if (!box.isEmpty()) {
+    if (Result<> size = check_size(box.sizes().maxCoeff(), source, "the mesh", scale); !size) return size.error();
   }
   for (std::size_t a = 0; a < raw.nodes.size(); ++a) {
     if (is_in_reach(raw.nodes[a])) continue;

@@ -2,6 +2,7 @@
 #include "mesh/surfaces.hpp"
 
 #include "detail/reach.hpp"
+#include "stylet/geom/plausible_size.hpp"
 
 #include <fmt/format.h>
 #include <vtkCellArray.h>
@@ -107,13 +108,9 @@ Result<SurfacesWithNotes> finish_surfaces(std::vector<Surface> surfaces, const s
     }
   }
   if (box.isEmpty()) return input_error(source, "there are no triangles", "Export triangulated surfaces");
-  const double extent = box.sizes().maxCoeff();
-  if (extent < 1.0 || extent > 2000.0) {
-    return input_error(source, fmt::format("its surfaces are {:.4g} mm across, 1 mm to 2 m is expected", extent),
-                       extent < 1.0 ? "The coordinates are probably in metres: pass --scale 1000; otherwise --scale S "
-                                      "with S = mm per file unit"
-                                    : "State the unit: --scale S with S = mm per file unit");
-  }
+  constexpr double smallest_mm = 1.0;  // of a part, such as a piece of the urethra
+  if (Result<> size = check_size(box.sizes().maxCoeff(), source, "the surface", 1.0, smallest_mm); !size)
+    return size.error();
   SurfacesWithNotes out;
   for (Surface& surface : surfaces) {
     weld(surface);

@@ -87,8 +87,8 @@ TEST(MotionCsv, what_is_no_motion_is_refused) {
 
 TEST(MotionCsv, another_header_is_refused_with_the_right_one) {
   const std::string message = refusal(read_motion("time,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n"));
-  expect_says(message,
-              {"hand.csv, line 1", "'time,x,y,z,qx,qy,qz,qw'", "Write the header time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz"});
+  expect_says(message, {"hand.csv, line 1", "'time,x,y,z,qx,qy,qz,qw'",
+                        "Write the header time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz", "real part"});
   expect_says(refusal(read_motion("0,0,0,-250,1,0,0,0\n1,0,0,-200,1,0,0,0\n")),
               {"line 1", "the header is '0,0,0,-250"});
 }
@@ -131,4 +131,62 @@ TEST(MotionCsv, positions_in_other_units_are_refused) {
               {"hand.csv", "moves within 0.05 mm", "multiply by 1000"});
   expect_says(refused_sample("1e-3,0,0,-200,1,0,0,0"),
               {"moves 50 mm in 0.001 s, faster than 10000 mm/s", "Check the units"});
+}
+
+TEST(MotionCsv, the_header_says_the_order_of_the_columns) {
+  const auto samples = read_motion("qx,qy,qz,qw,time_s,x_mm,y_mm,z_mm\n0,0,0,1,0,0,0,-250\n0,0,0.6,0.8,1,3,2,-200\n");
+  ASSERT_TRUE(samples.ok()) << samples.error().message();
+  EXPECT_EQ((*samples)[1].time_s, 1.0);
+  EXPECT_EQ((*samples)[1].base.origin, Vec3(3, 2, -200));
+  EXPECT_NEAR((*samples)[1].base.rotation.w(), 0.8, 1e-15);
+  EXPECT_NEAR((*samples)[1].base.rotation.z(), 0.6, 1e-15);
+  expect_says(refusal(read_motion("qx,qy,qz,qw,time_s,x_mm,y_mm,z_mm\n0,0,0,1,0,0,0,-250\n0,0,0,2,1,3,2,-200\n")),
+              {"line 3, columns 1 to 4 (qx, qy, qz, qw)", "norm is 2"});
+}
+
+namespace {
+
+/// A needle pushed along its axis, with the columns of the quaternion in this order.
+std::string pushed_along(const Vec3& direction, bool header_real_first, bool numbers_real_first,
+                         double roll_rad = 0.0) {
+  const BaseMotion motion = BaseMotion::straight({1, 2, -40}, direction, 200, 3, 60, 20, 0.3, true, 10, roll_rad);
+  std::ostringstream out;
+  out.precision(12);
+  out << (header_real_first ? kHeader : "time_s,x_mm,y_mm,z_mm,qx,qy,qz,qw\n");
+  for (const MotionSample& s : motion.samples()) {
+    const Eigen::Quaterniond& q = s.base.rotation;
+    out << s.time_s << ',' << s.base.origin.x() << ',' << s.base.origin.y() << ',' << s.base.origin.z() << ',';
+    if (numbers_real_first) out << q.w() << ',';
+    out << q.x() << ',' << q.y() << ',' << q.z();
+    if (!numbers_real_first) out << ',' << q.w();
+    out << '\n';
+  }
+  return out.str();
+}
+
+}  // namespace
+
+TEST(MotionCsv, quaternions_in_the_other_order_than_the_header_says_are_noticed) {
+  const auto noticed = [](const std::string& content) {
+    const ScratchFolder folder;
+    std::vector<std::string> notes;
+    const auto samples = read_motion_csv(folder.write("hand.csv", content), &notes);
+    return samples.ok() ? (notes.empty() ? std::string() : notes.front()) : samples.error().message();
+  };
+  for (const Vec3& way : {Vec3(0, 0, 1), Vec3(0.1, 0.2, 1), Vec3(-0.2, 0.1, 1), Vec3(1, 0.3, 0.2)}) {
+    for (const double roll : {0.0, 0.7}) {
+      const Vec3 d = way.normalized();
+      EXPECT_EQ(noticed(pushed_along(d, true, true, roll)), "");
+      EXPECT_EQ(noticed(pushed_along(d, false, false, roll)), "");
+      const std::string not_wxyz = noticed(pushed_along(d, true, false, roll));
+      expect_says(not_wxyz, {"x y z w", "Name the columns in the order of the numbers", "z_mm,qx,qy,qz,qw"});
+      const std::string not_xyzw = noticed(pushed_along(d, false, true, roll));
+      expect_says(not_xyzw, {"w x y z", "z_mm,qw,qx,qy,qz"});
+    }
+  }
+}
+
+TEST(MotionCsv, quaternions_by_which_the_needle_would_go_sideways_are_refused) {
+  const std::string message = refusal(read_motion(pushed_along(Vec3::UnitZ(), false, true)));
+  expect_says(message, {"hand.csv, columns qx, qy, qz, qw", "moves 180° away from its own axis", "w x y z"});
 }
