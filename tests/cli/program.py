@@ -53,14 +53,14 @@ class InFolder(unittest.TestCase):
         return json.loads(self.succeed(*arguments, "--json", "-").stdout)
 
     def refuse(self, *arguments, says):
-        """Runs the program with bad input. Checks that the exit status is 2, that standard error has one message (after
-        lines of progress, if any) with every text of `says`, that standard output is empty and that no file is
+        """Runs the program with bad input. Checks that the exit status is 2, that standard error has one error (after
+        warnings and lines of progress, if any) with every text of `says`, that standard output is empty and that no file is
         written."""
         before = files_under(self.folder)
         done = run(*arguments, cwd=self.folder)
         self.assertEqual(done.returncode, 2, f"{arguments}: {done.stderr}")
         self.assertEqual(done.stdout, "")
-        self.assertRegex(done.stderr, r"\A([^\n]+( \.\.\.|: \d+ %)\n)*stylet: error: [^\n]+\n\Z")
+        self.assertRegex(done.stderr, r"\A([^\n]+( \.\.\.|: \d+ %)\n|stylet: warning: [^\n]+\n)*stylet: error: [^\n]+\n\Z")
         for text in says:
             self.assertIn(text, done.stderr)
         self.assertEqual(files_under(self.folder), before)
