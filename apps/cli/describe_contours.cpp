@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "contour_measures.hpp"
 #include "describe.hpp"
 #include "table.hpp"
 
@@ -23,22 +22,33 @@ Description describe(const ContourSet& contours) {
     const Roi& roi = *structure.roi;
     if (structure.fault) notes.push_back(structure.fault->message());
     if (structure.oddity) notes.push_back(*structure.oddity);
-    const RoiMeasures size = measure(roi);
+    const std::optional<StructureSlices>& slices = structure.slices;
+    if (slices && slices->note) notes.push_back(*slices->note);
+    Eigen::AlignedBox3d box;
+    std::size_t points = 0;
+    for (const Contour& contour : roi.contours) {
+      points += contour.points.size();
+      for (const Vec3& x : contour.points) box.extend(x);
+    }
+    const auto known = [&](const Json& value) { return slices ? value : Json(); };
+    const auto shown = [&](const std::string& text) { return slices ? text : std::string("–"); };
+    const std::size_t count = slices ? slices->slices.size() : 0;
+    const double gap_mm = slices ? slices->usual_gap_mm : 0;
+    const double volume_cc = slices ? slices->volume_mm3() / 1000 : 0;
     const std::string& region = structure.use.region;
     out.json["structures"].push_back({{"name", roi.name},
                                       {"number", roi.number},
                                       {"type", roi.type},
                                       {"taken_as", region},
-                                      {"slices", size.slices},
+                                      {"slices", known(count)},
                                       {"contours", roi.contours.size()},
-                                      {"points", size.points},
-                                      {"slice_spacing_mm", size.slice_spacing_mm},
-                                      {"extent_mm", extent_json(size.box)},
-                                      {"volume_cc", size.volume_cc}});
-    table.row({roi.name, region.empty() ? "(left out)" : region, roi.type, fmt::to_string(size.slices),
-               fmt::to_string(roi.contours.size()), fmt::to_string(size.points),
-               fmt::format("{:.2f}", size.slice_spacing_mm), extent_text(size.box),
-               fmt::format("{:.1f}", size.volume_cc)});
+                                      {"points", points},
+                                      {"slice_spacing_mm", known(gap_mm)},
+                                      {"extent_mm", extent_json(box)},
+                                      {"volume_cc", known(volume_cc)}});
+    table.row({roi.name, region.empty() ? "(left out)" : region, roi.type, shown(fmt::to_string(count)),
+               fmt::to_string(roi.contours.size()), fmt::to_string(points), shown(fmt::format("{:.2f}", gap_mm)),
+               extent_text(box), shown(fmt::format("{:.1f}", volume_cc))});
   }
   Facts facts;
   facts.add("kind",

@@ -26,15 +26,16 @@ std::string report_text(const MeshReport& report) {
   }
   facts.add("time", fmt::format("{:.2f} s", report.seconds));
 
-  Table table({"region", "tetrahedra", "volume cc", "input cc", "off %", "distance mean mm", "largest mm"});
+  Table table(
+      {"region", "tetrahedra", "structure cc", "region cc", "mesh cc", "off %", "distance mean mm", "largest mm"});
   for (const RegionReport& region : report.regions) {
     const bool made_here = region.input_volume_cc <= 0;
     const double off = made_here ? 0 : 100 * (region.volume_cc / region.input_volume_cc - 1);
-    table.row({region.name, fmt::to_string(region.tets), fmt::format("{:.2f}", region.volume_cc),
-               made_here ? "" : fmt::format("{:.2f}", region.input_volume_cc),
-               made_here ? "" : fmt::format("{:+.1f}", off),
-               made_here ? "" : fmt::format("{:.2f}", region.surface_mean_mm),
-               made_here ? "" : fmt::format("{:.2f}", region.surface_max_mm)});
+    table.row(
+        {region.name, fmt::to_string(region.tets), made_here ? "" : fmt::format("{:.2f}", region.structure_volume_cc),
+         made_here ? "" : fmt::format("{:.2f}", region.input_volume_cc), fmt::format("{:.2f}", region.volume_cc),
+         made_here ? "" : fmt::format("{:+.1f}", off), made_here ? "" : fmt::format("{:.2f}", region.surface_mean_mm),
+         made_here ? "" : fmt::format("{:.2f}", region.surface_max_mm)});
   }
   std::string text = facts.text() + "\n\n" + table.text();
   for (const std::string& note : report.notes) text += "\n  note: " + note;
@@ -50,6 +51,7 @@ Json report_json(const MeshReport& report) {
         {"tets", region.tets},
         {"volume_cc", region.volume_cc},
         {"input_volume_cc", region.input_volume_cc},
+        {"structure_volume_cc", region.structure_volume_cc},
         {"surface_distance_mm", {{"mean", region.surface_mean_mm}, {"max", region.surface_max_mm}}}};
   }
   json["contour_points"] = {{"read", report.contour_points}, {"kept", report.contour_points_kept}};

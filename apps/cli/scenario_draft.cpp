@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scenario_draft.hpp"
 
-#include "contour_measures.hpp"
-
 #include "stylet/core/version.hpp"
 #include "stylet/patient/fit.hpp"
 #include "stylet/patient/judged_contours.hpp"
@@ -141,10 +139,15 @@ Result<Contents> contents_of(const ContourSet& contours, const std::vector<std::
   out.remarks = contours.notes;
   for (const JudgedStructure& structure : judged->structures) {
     if (!structure.is_used()) continue;
-    const RoiMeasures size = measure(*structure.roi);
-    if (is_target_region(structure.use.region)) out.target.extend(size.box);
-    out.regions.push_back({structure.roi->name, structure.use.region, remark_of(structure.use, size.volume_cc)});
+    const double volume_cc = structure.slices ? structure.slices->volume_mm3() / 1000 : 0;
+    if (is_target_region(structure.use.region)) {
+      for (const Contour& contour : structure.roi->contours) {
+        for (const Vec3& x : contour.points) out.target.extend(x);
+      }
+    }
+    out.regions.push_back({structure.roi->name, structure.use.region, remark_of(structure.use, volume_cc)});
     if (structure.oddity) out.remarks.push_back(*structure.oddity);
+    if (structure.slices && structure.slices->note) out.remarks.push_back(*structure.slices->note);
   }
   out.left_out = choice->left_out;
   if (!choice->has_target) {

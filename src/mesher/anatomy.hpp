@@ -13,6 +13,7 @@ struct Structure {
   double offset = 0;  ///< [mm] its surface is where distance = offset; chosen so that volumes are met
   /// [mm³] of the part of the input that no structure of higher priority takes; 0 = generated.
   double input_volume = 0;
+  double whole_volume = 0;     ///< [mm³] of the structure as it is in the input, all of it; 0 = generated
   std::vector<Vec3> boundary;  ///< [mm] LPS, points on the boundary in the input
   bool target = false;
   bool generated = false;  ///< made by the mesher, not part of the input

@@ -15,6 +15,15 @@ namespace {
 
 constexpr double kWholeGland = 0.85;  // if zones make up this share of the gland, they replace it
 
+/// A polygon without the points that cull() drops.
+Polygon culled(const Polygon& polygon, double tolerance_mm) {
+  Contour contour;
+  for (const Eigen::Vector2d& x : polygon) contour.points.emplace_back(x.x(), x.y(), 0.0);
+  Polygon few;
+  for (const Vec3& x : cull(contour, tolerance_mm).points) few.emplace_back(x.x(), x.y());
+  return few;
+}
+
 /// Makes the structure of one ROI.
 Result<Structure> structure_of(const RoiChoice& choice, const SliceFrame& frame, const MeshOptions& options,
                                Anatomy& anatomy) {
@@ -23,24 +32,20 @@ Result<Structure> structure_of(const RoiChoice& choice, const SliceFrame& frame,
   Structure s;
   s.name = choice.region;
   s.target = is_target_region(s.name);
-  std::vector<Contour> culled;
-  for (const Contour& c : roi.contours) {
-    anatomy.contour_points += static_cast<Index>(c.points.size());
-    culled.push_back(cull(c, options.cull_tolerance_mm));
-    anatomy.contour_points_kept += static_cast<Index>(culled.back().points.size());
-    s.boundary.insert(s.boundary.end(), culled.back().points.begin(), culled.back().points.end());
-  }
-  const std::vector<Slice> original = to_slices(roi.contours, frame);
-  std::vector<Slice> slices = to_slices(culled, frame);
-  if (slices.size() < 2) {
-    return input_error(where, fmt::format("it has contours on {} slice, expected at least 2", slices.size()),
-                       "Contour it on more slices" + or_skip(roi.name));
-  }
-  const std::vector<double> thickness = slice_thickness(original);
+  Result<StructureSlices> meant = structure_slices(roi, anatomy.source, frame);
+  if (!meant) return meant.error();
+  if (meant->note) anatomy.notes.push_back(*meant->note);
+  s.input_volume = meant->volume_mm3();
+  s.whole_volume = s.input_volume;
   double largest = 0;
-  for (std::size_t i = 0; i < original.size(); ++i) {
-    s.input_volume += original[i].area() * thickness[i];
-    largest = std::max(largest, original[i].area());
+  for (StructureSlice& slice : meant->slices) {
+    largest = std::max(largest, slice.area_mm2);
+    for (Polygon& polygon : slice.polygons) {
+      anatomy.contour_points += static_cast<Index>(polygon.size());
+      polygon = culled(polygon, options.cull_tolerance_mm);
+      anatomy.contour_points_kept += static_cast<Index>(polygon.size());
+      for (const auto& x : polygon) s.boundary.push_back(frame.lps(Vec3(x.x(), x.y(), slice.height)));
+    }
   }
   if (!(s.input_volume > 1.0)) {
     return input_error(where, fmt::format("the contours enclose {:.3g} mm³, expected more than 1 mm³", s.input_volume),
@@ -49,12 +54,11 @@ Result<Structure> structure_of(const RoiChoice& choice, const SliceFrame& frame,
   // The grid must be fine enough for the structure but fit into memory; smoothing must be well below its thickness.
   const double radius = std::sqrt(largest / std::numbers::pi);
   if (s.name == "body") {
-    const auto grid = interpolate_slices(slices, frame, std::clamp(radius / 20, 1.0, 4.0), 0);
+    const auto grid = interpolate_slices(*meant, std::clamp(radius / 20, 1.0, 4.0), 0);
     s.input_volume *= trim_body(*grid, anatomy);
     s.shape = grid;
   } else {
-    const auto grid =
-        interpolate_slices(slices, frame, std::clamp(radius / 20, 0.5, 3.0), std::min(1.2, 0.08 * radius));
+    const auto grid = interpolate_slices(*meant, std::clamp(radius / 20, 0.5, 3.0), std::min(1.2, 0.08 * radius));
     if (drop_small_islands(*grid, kSmallIsland) > 0) {
       anatomy.notes.push_back(
           fmt::format("Small pieces of '{}' that lie apart from its main part were left out.", roi.name));
@@ -73,6 +77,7 @@ void join(Structure& first, const Structure& second, std::vector<std::string>& n
   const auto united = unite(static_cast<const GridShape&>(*first.shape), static_cast<const GridShape&>(*second.shape));
   const double overlapping = united->volume(0) / (first.shape->volume(0) + second.shape->volume(0));
   first.input_volume = (first.input_volume + second.input_volume) * overlapping;
+  first.whole_volume = first.input_volume;
   first.boundary.insert(first.boundary.end(), second.boundary.begin(), second.boundary.end());
   first.shape = united;
   notes.push_back(fmt::format("More than one ROI is named as {}; their union is meshed.", first.name));
@@ -131,19 +136,8 @@ Result<Anatomy> anatomy_of(const ContourSet& set, const MeshOptions& options, co
   auto chosen = choose_rois(set, options, anatomy.notes);
   if (!chosen) return chosen.error();
   std::vector<const Roi*> rois;
-  for (const RoiChoice& c : *chosen) {
-    for (const Contour& contour : c.roi->contours) {
-      if (contour.points.size() >= 3 &&
-          std::all_of(contour.points.begin(), contour.points.end(), [](const Vec3& p) { return p.allFinite(); })) {
-        continue;
-      }
-      return input_error(fmt::format("{}, ROI '{}'", anatomy.source, c.roi->name),
-                         "a contour has fewer than three points, or a point that is not a finite number",
-                         "Export the structure again" + or_skip(c.roi->name));
-    }
-    rois.push_back(c.roi);
-  }
-  auto frame = common_frame(set, rois);
+  for (const RoiChoice& c : *chosen) rois.push_back(c.roi);
+  auto frame = common_slice_frame(rois, anatomy.source);
   if (!frame) return frame.error();
   for (std::size_t i = 0; i < chosen->size(); ++i) {
     report(progress, "interpolating contours", static_cast<double>(i) / static_cast<double>(chosen->size()));

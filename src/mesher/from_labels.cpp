@@ -100,6 +100,7 @@ SliceFields fields_of(const LabelImage& image, const Slices& s, Inside&& inside)
       }
     }
     f.heights.push_back((s.low[2] + k) * s.spacing[2]);
+    f.joins_next.push_back(true);
     f.fields.push_back(mask_distance(mask, s.size[0], s.size[1], s.spacing[0], s.spacing[1]));
   }
   return f;
@@ -213,6 +214,7 @@ Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, 
     structure.name = name;
     structure.target = !named || is_target_region(name);
     structure.input_volume = volume_of(set);
+    structure.whole_volume = structure.input_volume;
     structure.boundary = boundary_points(*shape, 0, own);
     structure.shape = std::move(shape);
     members.push_back(std::move(structure));
@@ -233,7 +235,8 @@ Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, 
     body.boundary = boundary_points(*shape, 0, whole);
     std::set<int> all;
     for (const auto& [label, count] : voxels) all.insert(label);
-    body.input_volume = volume_of(all) * trim_body(*shape, anatomy);
+    body.whole_volume = volume_of(all);
+    body.input_volume = body.whole_volume * trim_body(*shape, anatomy);
     body.shape = std::move(shape);
     anatomy.add(std::move(body));
   }

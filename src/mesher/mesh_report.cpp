@@ -10,7 +10,7 @@
 namespace stylet::meshing {
 namespace {
 
-constexpr double kVolumeTolerance = 0.08;
+constexpr double kVolumeTolerance = 0.03;
 
 /// Points of the structure's boundary that are also on the boundary of its region, not inside a structure of higher
 /// priority.
@@ -47,6 +47,7 @@ MeshReport report_on(const TetMesh& mesh, const Anatomy& a) {
     region.tets = r.quality.region_tets[k];
     region.volume_cc = r.quality.region_volume_cc[k];
     region.input_volume_cc = s.input_volume / 1000;
+    region.structure_volume_cc = s.whole_volume / 1000;
     const DistanceSummary d = distance_to_boundary(mesh, static_cast<int>(k), visible_boundary(a, s));
     if (d.count > 0) {
       region.surface_mean_mm = d.sum / static_cast<double>(d.count);

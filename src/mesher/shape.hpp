@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "slice_frame.hpp"
+#include "stylet/geom/structure_slices.hpp"
 
 #include <memory>
 
@@ -82,13 +82,12 @@ class Superquadric : public Shape {
   Vec3 centre_, half_axes_;
 };
 
-/// Signed distance of the solid between parallel slices. The signed distance fields of the slices are interpolated
-/// along the slice normal (shape-based interpolation, Raya & Udupa 1990). Rounded caps close the solid half a slice
-/// beyond its last contours; the result is smoothed and made a true distance.
+/// Signed distance of the solid between parallel slices. The signed distance fields of slices that join are
+/// interpolated along the slice normal (shape-based interpolation, Raya & Udupa 1990). Rounded caps close the solid
+/// half a slice beyond its last contours; the result is smoothed and made a true distance.
 /// @param voxel wanted grid spacing [mm]
 /// @param sigma width of the Gaussian for smoothing [mm]
-std::shared_ptr<GridShape> interpolate_slices(const std::vector<Slice>& slices, const SliceFrame& frame, double voxel,
-                                              double sigma);
+std::shared_ptr<GridShape> interpolate_slices(const StructureSlices& slices, double voxel, double sigma);
 
 /// Union of two solids in the same slice frame, on a grid that contains both.
 std::shared_ptr<GridShape> unite(const GridShape& a, const GridShape& b);
@@ -102,7 +101,8 @@ struct SliceFields {
   std::vector<double> heights;  ///< (slices) [mm] along the normal, ascending
   /// (slices) [mm] size[0]*size[1] values each; empty for a slice without the structure.
   std::vector<std::vector<float>> fields;
-  double gap = 0;  ///< [mm] usual distance between slices
+  std::vector<bool> joins_next;  ///< (slices) whether the structure continues to the next slice, if both have it
+  double gap = 0;                ///< [mm] usual distance between slices
 };
 
 /// The same, from in-plane distance fields.

@@ -9,7 +9,7 @@ namespace stylet::meshing {
 namespace {
 
 /// In-plane signed distance of a slice's polygons (even-odd rule) at all pixels of a grid.
-std::vector<float> polygon_distance(const Slice& slice, const SliceFields& grid) {
+std::vector<float> polygon_distance(const StructureSlice& slice, const SliceFields& grid) {
   struct Edge {
     double ax, ay, dx, dy, inverse_length2;
   };
@@ -148,8 +148,7 @@ std::shared_ptr<GridShape> interpolate_fields(const SliceFields& stack, double s
   };
   for (int s = 0; s < slices; ++s) {
     if (stack.fields[s].empty()) continue;
-    const bool joins = !runs.empty() && runs.back().last == s - 1 &&
-                       stack.heights[s] - stack.heights[s - 1] <= kMaxBridgedGaps * stack.gap;
+    const bool joins = !runs.empty() && runs.back().last == s - 1 && stack.joins_next[s - 1];
     if (joins) {
       runs.back().last = s;
     } else {
@@ -206,13 +205,12 @@ std::shared_ptr<GridShape> interpolate_fields(const SliceFields& stack, double s
   return g;
 }
 
-std::shared_ptr<GridShape> interpolate_slices(const std::vector<Slice>& slices, const SliceFrame& frame, double voxel,
-                                              double sigma) {
+std::shared_ptr<GridShape> interpolate_slices(const StructureSlices& slices, double voxel, double sigma) {
   SliceFields stack;
-  stack.frame = frame;
-  stack.gap = slice_gap(slices);
+  stack.frame = slices.frame;
+  stack.gap = slices.usual_gap_mm;
   Eigen::AlignedBox2d box;
-  for (const Slice& s : slices) {
+  for (const StructureSlice& s : slices.slices) {
     for (const Polygon& p : s.polygons) {
       for (const auto& q : p) box.extend(q);
     }
@@ -225,8 +223,9 @@ std::shared_ptr<GridShape> interpolate_slices(const std::vector<Slice>& slices, 
     stack.spacing[a] = box.sizes()[a] / (stack.size[a] - 1);
   }
   stack.low = box.min();
-  for (const Slice& s : slices) {
+  for (const StructureSlice& s : slices.slices) {
     stack.heights.push_back(s.height);
+    stack.joins_next.push_back(s.joins_next);
     stack.fields.push_back(polygon_distance(s, stack));
   }
   return interpolate_fields(stack, voxel, sigma);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/patient/judged_contours.hpp"
 
-#include "stylet/io/contours_io.hpp"
-
 namespace stylet {
 
 const Error* JudgedContours::fault() const {
@@ -29,7 +27,12 @@ Result<JudgedContours> judge_contours(const ContourSet& contours, const MeshOpti
     JudgedStructure& structure = judged.structures.emplace_back();
     structure.roi = &roi;
     if (!roi.contours.empty()) structure.use = *use++;
-    if (const Result<> sound = check_roi(roi, contours.source); !sound) structure.fault = sound.error();
+    Result<StructureSlices> slices = structure_slices(roi, contours.source);
+    if (slices) {
+      structure.slices = *std::move(slices);
+    } else {
+      structure.fault = slices.error();
+    }
     structure.oddity = long_closing_side(roi);
   }
   judged.choice = *std::move(choice);

@@ -44,7 +44,8 @@ MeshReport report_as_is(const TetMesh& mesh) {
     report.regions.push_back({.name = mesh.regions[region],
                               .tets = report.quality.region_tets[region],
                               .volume_cc = report.quality.region_volume_cc[region],
-                              .input_volume_cc = report.quality.region_volume_cc[region]});
+                              .input_volume_cc = report.quality.region_volume_cc[region],
+                              .structure_volume_cc = report.quality.region_volume_cc[region]});
   }
   return report;
 }

@@ -7,12 +7,12 @@
 namespace stylet::meshing {
 namespace {
 
-std::vector<Slice> slices_of(const Roi& roi) { return to_slices(roi.contours, SliceFrame{}); }
+StructureSlices slices_of(const Roi& roi) { return structure_slices(roi, "", SliceFrame{}).value(); }
 
 TEST(SliceInterpolation, a_sphere_from_slices_has_its_volume_and_its_distances) {
   const double radius = 20;
   const Roi roi = testing::ellipsoid("sphere", Vec3::Zero(), Vec3::Constant(radius), 4);
-  const auto shape = interpolate_slices(slices_of(roi), SliceFrame{}, 0.9, 0.5);
+  const auto shape = interpolate_slices(slices_of(roi), 0.9, 0.5);
   EXPECT_NEAR(shape->volume(0) / (4.0 / 3.0 * std::numbers::pi * std::pow(radius, 3)), 1, 0.02);
   for (const Vec3& direction : {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(1, 1, 0.5), Vec3(-1, 2, -1)}) {
     const Vec3 u = direction.normalized();
@@ -25,7 +25,7 @@ TEST(SliceInterpolation, a_sphere_from_slices_has_its_volume_and_its_distances) 
 
 TEST(SliceInterpolation, the_surface_passes_through_the_contours) {
   const Roi roi = testing::ellipsoid("e", Vec3(3, 2, 1), Vec3(22, 15, 18), 5);
-  const auto shape = interpolate_slices(slices_of(roi), SliceFrame{}, 0.8, 0.0);
+  const auto shape = interpolate_slices(slices_of(roi), 0.8, 0.0);
   for (std::size_t k = 1; k + 1 < roi.contours.size(); ++k) {
     for (const Vec3& p : roi.contours[k].points) EXPECT_NEAR(shape->distance(p), 0, 0.25);
   }
@@ -33,7 +33,7 @@ TEST(SliceInterpolation, the_surface_passes_through_the_contours) {
 
 TEST(SliceInterpolation, a_structure_ends_half_a_slice_beyond_its_last_contour) {
   const Roi roi = testing::tube("tube", Vec3::Zero(), 20, 10, 4);
-  const auto shape = interpolate_slices(slices_of(roi), SliceFrame{}, 0.5, 0.0);
+  const auto shape = interpolate_slices(slices_of(roi), 0.5, 0.0);
   EXPECT_LT(shape->distance(Vec3(0, 0, 21.7)), 0);
   EXPECT_GT(shape->distance(Vec3(0, 0, 22.3)), 0);
   EXPECT_LT(shape->distance(Vec3(0, 0, -1.7)), 0);
@@ -44,10 +44,10 @@ TEST(SliceInterpolation, a_structure_ends_half_a_slice_beyond_its_last_contour) 
 TEST(SliceInterpolation, an_inner_contour_is_a_hole) {
   Roi roi = testing::tube("outer", Vec3::Zero(), 20, 12, 4);
   for (const Contour& c : testing::tube("inner", Vec3::Zero(), 20, 5, 4).contours) roi.contours.push_back(c);
-  const std::vector<Slice> slices = slices_of(roi);
-  ASSERT_EQ(slices.size(), 6U);
-  EXPECT_NEAR(slices[2].area(), std::numbers::pi * (144 - 25), 6);
-  const auto shape = interpolate_slices(slices, SliceFrame{}, 0.6, 0.0);
+  const StructureSlices slices = slices_of(roi);
+  ASSERT_EQ(slices.slices.size(), 6U);
+  EXPECT_NEAR(slices.slices[2].area_mm2, std::numbers::pi * (144 - 25), 6);
+  const auto shape = interpolate_slices(slices, 0.6, 0.0);
   EXPECT_GT(shape->distance(Vec3(0, 0, 10)), 3);
   EXPECT_LT(shape->distance(Vec3(8.5, 0, 10)), -3);
   EXPECT_GT(shape->distance(Vec3(14, 0, 10)), 1);
@@ -56,10 +56,10 @@ TEST(SliceInterpolation, an_inner_contour_is_a_hole) {
 TEST(SliceInterpolation, a_missing_slice_is_bridged_and_a_wide_gap_is_not) {
   Roi roi = testing::tube("tube", Vec3::Zero(), 40, 8, 4);
   roi.contours.erase(roi.contours.begin() + 5);
-  EXPECT_LT(interpolate_slices(slices_of(roi), SliceFrame{}, 0.6, 0)->distance(Vec3(0, 0, 20)), -5);
-  EXPECT_NEAR(slice_thickness(slices_of(roi))[4], 6, 1e-9);
+  EXPECT_LT(interpolate_slices(slices_of(roi), 0.6, 0)->distance(Vec3(0, 0, 20)), -5);
+  EXPECT_NEAR(slices_of(roi).slices[4].to - slices_of(roi).slices[4].from, 6, 1e-9);
   for (const Contour& c : testing::tube("far", Vec3(0, 0, 80), 12, 8, 4).contours) roi.contours.push_back(c);
-  const auto two = interpolate_slices(slices_of(roi), SliceFrame{}, 0.6, 0);
+  const auto two = interpolate_slices(slices_of(roi), 0.6, 0);
   EXPECT_GT(two->distance(Vec3(0, 0, 60)), 5);
   EXPECT_LT(two->distance(Vec3(0, 0, 86)), -5);
 }

@@ -6,7 +6,6 @@
 #include "stylet/geom/contours.hpp"
 
 #include <filesystem>
-#include <optional>
 #include <span>
 
 namespace stylet {
@@ -26,16 +25,5 @@ Result<> write_rtstruct(const ContourSet& contours, const std::filesystem::path&
 Result<ContourSet> read_contour_json(const std::filesystem::path& path, std::span<const std::string> skip = {});
 /// Writes a contour set in JSON (docs/formats.md).
 Result<> write_contour_json(const ContourSet& contours, const std::filesystem::path& path);
-
-/// Checks that contours can describe a structure. Errors: fewer than three points, self-crossing contours, a single
-/// slice, NaN, contours that are not parallel to each other, an extent that indicates wrong units (< 1 mm or > 2 m).
-/// @param roi the structure
-/// @param where file name for the message
-Result<> check_roi(const Roi& roi, const std::string& where);
-
-/// A note for the user if the side that closes a contour, from its last point to its first, is far longer than all its
-/// other sides: it may be a straight side, or a curve that somebody forgot to close. Contours are closed by definition
-/// (DICOM CLOSED_PLANAR), so neither is an error.
-std::optional<std::string> long_closing_side(const Roi& roi);
 
 }  // namespace stylet

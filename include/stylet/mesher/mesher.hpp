@@ -33,10 +33,13 @@ struct MeshOptions {
 struct RegionReport {
   std::string name;
   Index tets = 0;
-  double volume_cc = 0;        ///< [cm³] volume of the region in the mesh
-  double input_volume_cc = 0;  ///< [cm³] 0 for regions that the mesher made itself (body, band, soft layers)
-  double surface_mean_mm = 0;  ///< mean distance between the region's boundary in the input and in the mesh
-  double surface_max_mm = 0;   ///< largest distance between these two boundaries
+  double volume_cc = 0;  ///< [cm³] volume of the region in the mesh
+  /// [cm³] of the structure in the input, without the parts that other structures take; 0 for regions that the mesher
+  /// made itself (body, band, soft layers)
+  double input_volume_cc = 0;
+  double structure_volume_cc = 0;  ///< [cm³] of the whole structure in the input, as `stylet info` and the dose have it
+  double surface_mean_mm = 0;      ///< mean distance between the region's boundary in the input and in the mesh
+  double surface_max_mm = 0;       ///< largest distance between these two boundaries
 };
 
 /// Figures about a mesh and how well it reproduces its input.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "stylet/geom/structure_slices.hpp"
 #include "stylet/mesher/structures.hpp"
 
 #include <optional>
@@ -11,10 +12,11 @@ namespace stylet {
 
 /// Judgement of one structure of a contour set: its use, and what is wrong with it.
 struct JudgedStructure {
-  const Roi* roi = nullptr;    ///< the structure in the contour set
-  StructureUse use;            ///< the region that it becomes, or why it is left out
-  std::optional<Error> fault;  ///< why its contours cannot be a structure (check_roi()); matters only if it is used
-  std::optional<std::string> oddity;  ///< note for the user about contours that look odd (long_closing_side())
+  const Roi* roi = nullptr;               ///< the structure in the contour set
+  StructureUse use;                       ///< the region that it becomes, or why it is left out
+  std::optional<StructureSlices> slices;  ///< what its contours mean; nothing if there is a fault
+  std::optional<Error> fault;             ///< why its contours cannot be a structure; matters only if it is used
+  std::optional<std::string> oddity;      ///< note for the user about contours that look odd (long_closing_side())
 
   [[nodiscard]] bool is_used() const { return !use.region.empty(); }
 };
@@ -30,7 +32,7 @@ struct JudgedContours {
   [[nodiscard]] std::vector<std::string> oddities() const;
 };
 
-/// Judges the structures of a contour set: choose_structures(), check_roi() and long_closing_side() together.
+/// Judges the structures of a contour set: choose_structures(), structure_slices() and long_closing_side() together.
 /// read_patient(), `stylet info` and its draft of a scenario all use this function.
 /// @param contours must outlive the result
 /// Errors: those of choose_structures(). A fault of a structure is reported in JudgedStructure::fault and is not an

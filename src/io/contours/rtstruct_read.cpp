@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <map>
+#include <optional>
 
 namespace stylet::detail {
 
@@ -17,44 +19,54 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The points of one ContourData value (3006,0050): x\y\z\x\y\z… [mm] LPS.
-Result<Contour> parse_points(DcmItem& item, const std::string& where) {
-  const char* data = nullptr;  // fetched as one text, because fetching number by number takes quadratic time
-  if (item.findAndGetString(DCM_ContourData, data).bad() || data == nullptr || *data == '\0') {
-    return input_error(where, "the contour has no points (ContourData is missing or empty)",
-                       "Export the structure set again");
-  }
+/// The points of one ContourData value (3006,0050): x\y\z\x\y\z… [mm] LPS; none if the value is empty.
+Result<std::vector<Vec3>> parse_points(const char* data, const std::string& where) {
   const auto values = split(data, '\\');
   if (values.size() % 3 != 0) {
     return input_error(where,
-                       fmt::format("ContourData has {} numbers, which is not a multiple of three", values.size()),
-                       "The file is damaged; export the structure set again");
+                       fmt::format("ContourData has {} numbers, which is not a multiple of three", values.size()), "");
   }
-  Contour contour;
-  contour.points.reserve(values.size() / 3);
+  std::vector<Vec3> points;
+  points.reserve(values.size() / 3);
   for (std::size_t i = 0; i < values.size(); i += 3) {
     Vec3 point;
     for (int axis = 0; axis < 3; ++axis) {
       const auto value = to_number(values[i + axis]);
       if (!value || !std::isfinite(*value)) {
-        return input_error(fmt::format("{}, point {}", where, i / 3 + 1),
-                           fmt::format("the coordinate '{}' is not a finite number", trimmed(values[i + axis])),
-                           "The file is damaged; export the structure set again");
+        return input_error(
+            where,
+            fmt::format("the coordinate '{}' of point {} is not a finite number", trimmed(values[i + axis]), i / 3 + 1),
+            "");
       }
       point[axis] = *value;
     }
-    contour.points.push_back(point);
-  }
-  const auto stated = integer_of(item, DCM_NumberOfContourPoints);
-  if (stated && *stated != static_cast<int>(contour.points.size())) {
-    return input_error(where, fmt::format("the file announces {} points and holds {}", *stated, contour.points.size()),
-                       "The file is damaged; export the structure set again");
+    points.push_back(point);
   }
   // Some programs repeat the first point at the end; the copies are dropped.
-  while (contour.points.size() > 1 && (contour.points.back() - contour.points.front()).norm() < 1e-3) {
-    contour.points.pop_back();
+  while (points.size() > 1 && (points.back() - points.front()).norm() < 1e-3) points.pop_back();
+  return points;
+}
+
+/// Reads one contour. A damaged one is left out, and a note of the set says so.
+std::optional<Contour> read_contour(DcmItem& item, const std::string& name, int number, ContourSet& set) {
+  const std::string where = fmt::format("ROI '{}', contour {}", name, number);
+  const char* data = nullptr;  // fetched as one text, because fetching number by number takes quadratic time
+  if (item.findAndGetString(DCM_ContourData, data).bad() || data == nullptr || trimmed(data).empty()) {
+    set.notes.push_back(fmt::format("{}: it has no points and is left out.", where));
+    return std::nullopt;
   }
-  return contour;
+  Result<std::vector<Vec3>> points = parse_points(data, where);
+  if (!points) {
+    set.notes.push_back(fmt::format("{}: {}. This contour is damaged and is left out.", where, points.error().what));
+    return std::nullopt;
+  }
+  const auto stated = integer_of(item, DCM_NumberOfContourPoints);
+  const auto held = static_cast<int>(std::count(data, data + std::strlen(data), '\\') / 3 + 1);
+  if (stated && *stated != held) {
+    set.notes.push_back(fmt::format("{}: the file announces {} points and holds {}. Those that it holds are used.",
+                                    where, *stated, held));
+  }
+  return Contour{std::move(*points)};
 }
 
 struct RoiHeader {
@@ -62,33 +74,27 @@ struct RoiHeader {
   std::string frame_of_reference;
 };
 
-/// Reads the closed contours of one ROIContourSequence item into `roi`; adds a note to the set on what it ignored.
-Result<> read_contours(DcmItem& item, Roi& roi, ContourSet& set) {
-  const std::string& source = set.source;
-  std::map<std::string, int> passed_over;
+/// Adds the closed contours of one ROIContourSequence item to `roi`; notes of the set say what was left out.
+/// @return geometric types of curves that are not closed, with their number
+std::map<std::string, int> read_contours(DcmItem& item, Roi& roi, ContourSet& set) {
+  std::map<std::string, int> open;
   int number = 0;
   for (DcmItem* contour_item : items_of(item, DCM_ContourSequence)) {
     ++number;
-    const std::string where = fmt::format("{}, ROI '{}', contour {}", source, roi.name, number);
     const std::string type = text_of(*contour_item, DCM_ContourGeometricType);
     if (type != "CLOSED_PLANAR" && type != "CLOSEDPLANAR_XOR") {
-      ++passed_over[type.empty() ? "(no type)" : type];
+      ++open[type.empty() ? "(no type)" : type];
       continue;
     }
-    Result<Contour> contour = parse_points(*contour_item, where);
-    if (!contour) return contour.error();
-    roi.contours.push_back(std::move(*contour));
+    if (auto contour = read_contour(*contour_item, roi.name, number, set)) roi.contours.push_back(std::move(*contour));
   }
-  if (roi.contours.empty()) {
-    set.passed_over.push_back({roi.name, passed_over.empty() ? "empty" : "only open curves or points"});
-    return Ok{};
-  }
-  for (const auto& [type, count] : passed_over) {
+  for (const auto& [type, count] : open) {
+    if (roi.contours.empty()) break;
     set.notes.push_back(
         fmt::format("ROI '{}': {} {} curve{} ignored, because only closed planar contours bound a region.", roi.name,
                     count, type, count == 1 ? "" : "s"));
   }
-  return Ok{};
+  return open;
 }
 
 Result<> check_is_structure_set(DcmDataset& data, const std::string& source) {
@@ -103,13 +109,31 @@ Result<> check_is_structure_set(DcmDataset& data, const std::string& source) {
                      "Name the RT Structure Set that belongs to it; images, plans and doses hold no contours");
 }
 
-/// Checks that a structure has the frame of reference of the set, which is that of its first structure.
-Result<> in_the_sets_frame(const Roi& roi, const RoiHeader& header, ContourSet& set) {
-  if (set.frame_of_reference.empty()) set.frame_of_reference = header.frame_of_reference;
-  if (header.frame_of_reference.empty() || header.frame_of_reference == set.frame_of_reference) return Ok{};
-  return input_error(fmt::format("{}, ROI '{}'", set.source, roi.name),
-                     "its frame of reference differs from that of the structures before it in the file",
-                     "Export structures of one registration only; Stylet does not register images");
+/// The frame of reference of most structures; of the first one where two frames have equally many. Structures in other
+/// frames are left out, with a note: nothing here registers images.
+void keep_one_frame(const std::map<int, RoiHeader>& headers, std::span<const std::string> skip, ContourSet& set) {
+  std::vector<std::pair<std::string, int>> frames;  // in the order of the file
+  for (const Roi& roi : set.rois) {
+    const std::string& frame = headers.at(roi.number).frame_of_reference;
+    if (frame.empty() || is_listed(roi.name, skip)) continue;
+    auto found = std::find_if(frames.begin(), frames.end(), [&](const auto& f) { return f.first == frame; });
+    if (found == frames.end()) found = frames.insert(frames.end(), {frame, 0});
+    ++found->second;
+  }
+  if (frames.empty()) return;
+  set.frame_of_reference = std::max_element(frames.begin(), frames.end(), [](const auto& a, const auto& b) {
+                             return a.second < b.second;
+                           })->first;
+  std::erase_if(set.rois, [&](const Roi& roi) {
+    const std::string& frame = headers.at(roi.number).frame_of_reference;
+    if (frame.empty() || frame == set.frame_of_reference) return false;
+    set.passed_over.push_back({roi.name, "in another frame of reference"});
+    set.notes.push_back(
+        fmt::format("ROI '{}' is left out: its frame of reference ({}) is not that of the other structures ({}), and "
+                    "Stylet does not register images. Export structures of one registration.",
+                    roi.name, frame, set.frame_of_reference));
+    return true;
+  });
 }
 
 }  // namespace
@@ -130,11 +154,12 @@ Result<ContourSet> parse_rtstruct(const fs::path& path, std::span<const std::str
   std::map<int, RoiHeader> headers;
   for (DcmItem* item : items_of(data, DCM_StructureSetROISequence)) {
     const auto number = integer_of(*item, DCM_ROINumber);
-    if (!number) {
-      return input_error(source, "a structure has no ROI number",
-                         "The file is damaged; export the structure set again");
-    }
     RoiHeader header{text_of(*item, DCM_ROIName), text_of(*item, DCM_ReferencedFrameOfReferenceUID)};
+    if (!number) {
+      set.notes.push_back(
+          fmt::format("A structure without a number ('{}') is left out: no contours can refer to it.", header.name));
+      continue;
+    }
     if (header.name.empty()) header.name = fmt::format("ROI {}", *number);
     if (!headers.emplace(*number, header).second) {
       return input_error(source, fmt::format("two structures have ROI number {}", *number),
@@ -152,42 +177,43 @@ Result<ContourSet> parse_rtstruct(const fs::path& path, std::span<const std::str
     }
   }
 
-  std::map<int, bool> has_contour_item;
+  std::map<int, std::string> nothing;  // structures without closed contours, and why
+  for (const auto& [number, header] : headers) nothing[number] = "empty";
   for (DcmItem* item : items_of(data, DCM_ROIContourSequence)) {
     const auto number = integer_of(*item, DCM_ReferencedROINumber);
     if (!number || !headers.contains(*number)) {
-      return input_error(source, "contours refer to a structure that is not in the file",
-                         "The file is damaged; export the structure set again");
-    }
-    const RoiHeader& header = headers.at(*number);
-    has_contour_item[*number] = true;
-    Roi roi;
-    roi.name = header.name;
-    roi.number = *number;
-    roi.type = types[*number];
-    const std::string colour_text = text_of(*item, DCM_ROIDisplayColor);
-    const auto colour = split(colour_text, '\\');
-    for (std::size_t i = 0; colour.size() == 3 && i < 3; ++i) {
-      roi.colour[i] = static_cast<int>(std::clamp(to_number(colour[i]).value_or(255.0), 0.0, 255.0));
-    }
-    Result<> usable = read_contours(*item, roi, set);
-    if (usable && roi.contours.empty()) continue;
-    const bool may_go = is_listed(roi.name, skip);
-    if (usable && !(may_go && set.frame_of_reference.empty())) usable = in_the_sets_frame(roi, header, set);
-    if (!usable && may_go) {
-      set.passed_over.push_back({roi.name, "damaged, and named in [patient] skip"});
+      set.notes.push_back(fmt::format("Contours that refer to {} are left out: the file has no such structure.",
+                                      number ? fmt::format("ROI number {}", *number) : "no ROI number"));
       continue;
     }
-    if (!usable) {
-      Error error = usable.error();
-      error.cure += or_skip(roi.name);
-      return error;
+    const auto known =
+        std::find_if(set.rois.begin(), set.rois.end(), [&](const Roi& roi) { return roi.number == *number; });
+    Roi roi;
+    if (known != set.rois.end()) {
+      set.notes.push_back(
+          fmt::format("The contours of ROI '{}' are in several items of the file, which are joined.", known->name));
+      roi = std::move(*known);
+      set.rois.erase(known);
+    } else {
+      roi.name = headers.at(*number).name;
+      roi.number = *number;
+      roi.type = types[*number];
+      const std::string colour_text = text_of(*item, DCM_ROIDisplayColor);
+      const auto colour = split(colour_text, '\\');
+      for (std::size_t i = 0; colour.size() == 3 && i < 3; ++i) {
+        roi.colour[i] = static_cast<int>(std::clamp(to_number(colour[i]).value_or(255.0), 0.0, 255.0));
+      }
     }
+    const auto open = read_contours(*item, roi, set);
+    if (roi.contours.empty()) {
+      if (!open.empty()) nothing[*number] = "only open curves or points";
+      continue;
+    }
+    nothing.erase(*number);
     set.rois.push_back(std::move(roi));
   }
-  for (const auto& [number, header] : headers) {
-    if (!has_contour_item.contains(number)) set.passed_over.push_back({header.name, "empty"});
-  }
+  for (const auto& [number, why] : nothing) set.passed_over.push_back({headers.at(number).name, why});
+  keep_one_frame(headers, skip, set);
   if (set.frame_of_reference.empty()) {
     const auto frames = items_of(data, DCM_ReferencedFrameOfReferenceSequence);
     if (!frames.empty()) set.frame_of_reference = text_of(*frames.front(), DCM_FrameOfReferenceUID);

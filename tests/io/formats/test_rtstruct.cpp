@@ -158,34 +158,67 @@ TEST(Rtstruct, a_repeated_first_point_is_dropped) {
   EXPECT_EQ(set->rois[0].contours[0].points.size(), 3U);
 }
 
-TEST(Rtstruct, damaged_contours_are_refused_with_their_place) {
-  const auto data_is = [](const char* value, const char* count = "3") {
+/// Whether one of the notes has all of these parts.
+bool says(const ContourSet& set, std::initializer_list<const char*> parts) {
+  return std::any_of(set.notes.begin(), set.notes.end(), [&](const std::string& note) {
+    return std::all_of(parts.begin(), parts.end(),
+                       [&](const char* part) { return note.find(part) != std::string::npos; });
+  });
+}
+
+TEST(Rtstruct, a_damaged_contour_costs_only_itself_and_is_named) {
+  const Folder whole;
+  const Result<ContourSet> sound = read_rtstruct(changed(whole, [](DcmDataset&) {}));
+  ASSERT_TRUE(sound.ok()) << why(sound);
+  const std::size_t all = sound->rois[1].contours.size();
+  const auto expect_note = [&](const char* value, const char* count, std::size_t left,
+                               std::initializer_list<const char*> parts) {
     const Folder folder;
-    return read_rtstruct(changed(folder, [&](DcmDataset& data) {
+    const Result<ContourSet> set = read_rtstruct(changed(folder, [&](DcmDataset& data) {
       DcmItem& c = contour(data, 1, 2);
       put(c, DCM_ContourData, value);
       put(c, DCM_NumberOfContourPoints, count);
     }));
+    ASSERT_TRUE(set.ok()) << why(set);
+    EXPECT_TRUE(says(*set, parts)) << value;
+    EXPECT_EQ(set->rois[1].contours.size(), left) << value;
+    EXPECT_EQ(set->rois[0].contours.size(), sound->rois[0].contours.size());
   };
-  expect_refused(data_is("0\\0\\0\\10\\0\\0\\10\\10"), {"ROI 'Rectum', contour 3", "8 numbers", "multiple of three"});
-  expect_refused(data_is("0\\0\\0\\10\\x\\0\\10\\10\\0"), {"contour 3, point 2", "'x'"});
-  expect_refused(data_is("0\\0\\0\\10\\nan\\0\\10\\10\\0"), {"contour 3, point 2", "not a finite number"});
-  expect_refused(data_is("0\\0\\0\\10\\1e999\\0\\10\\10\\0"), {"contour 3, point 2", "not a finite number"});
-  expect_refused(data_is(""), {"contour 3", "no points"});
-  expect_refused(data_is("0\\0\\0\\10\\0\\0\\10\\10\\0", "5"), {"announces 5 points and holds 3"});
+  expect_note("0\\0\\0\\10\\0\\0\\10\\10", "3", all - 1,
+              {"ROI 'Rectum', contour 3", "8 numbers", "multiple of three", "left out"});
+  expect_note("0\\0\\0\\10\\x\\0\\10\\10\\0", "3", all - 1, {"ROI 'Rectum', contour 3", "'x'", "point 2"});
+  expect_note("0\\0\\0\\10\\nan\\0\\10\\10\\0", "3", all - 1, {"contour 3", "not a finite number"});
+  expect_note("0\\0\\0\\10\\1e999\\0\\10\\10\\0", "3", all - 1, {"contour 3", "not a finite number"});
+  expect_note("", "3", all - 1, {"contour 3", "no points"});
+  expect_note("0\\0\\0\\10\\0\\0\\10\\10\\0", "5", all, {"contour 3", "announces 5 points and holds 3"});
 }
 
-TEST(Rtstruct, a_damaged_structure_is_refused_with_the_way_to_do_without_it_and_skipped_where_asked) {
+TEST(Rtstruct, contours_of_one_structure_in_several_items_are_joined) {
   const Folder folder;
-  const fs::path file = changed(folder, [](DcmDataset& data) { put(contour(data, 1, 2), DCM_ContourData, "0\\0\\x"); });
-  expect_refused(read_rtstruct(file), {"ROI 'Rectum'", "skip = [\"Rectum\"] below [patient]"});
-  const std::vector<std::string> skip{"rectum"};
-  const Result<ContourSet> set = read_rtstruct(file, skip);
+  const Result<ContourSet> set = read_rtstruct(
+      changed(folder, [](DcmDataset& d) { put(item(d, DCM_ROIContourSequence, 1), DCM_ReferencedROINumber, "1"); }));
   ASSERT_TRUE(set.ok()) << why(set);
   ASSERT_EQ(set->rois.size(), 1U);
-  EXPECT_EQ(set->rois[0].name, "Prostate");
+  EXPECT_TRUE(says(*set, {"'Prostate'", "several items"}));
   ASSERT_EQ(set->passed_over.size(), 1U);
   EXPECT_EQ(set->passed_over[0].name, "Rectum");
+}
+
+TEST(Rtstruct, foreign_parts_are_left_out_and_named) {
+  const Folder folder;
+  const Result<ContourSet> foreign = read_rtstruct(
+      changed(folder, [](DcmDataset& d) { put(item(d, DCM_ROIContourSequence, 1), DCM_ReferencedROINumber, "9"); }));
+  ASSERT_TRUE(foreign.ok()) << why(foreign);
+  EXPECT_TRUE(says(*foreign, {"ROI number 9", "left out"}));
+  EXPECT_EQ(foreign->rois.size(), 1U);
+  const Folder other;
+  const Result<ContourSet> frames = read_rtstruct(changed(other, [](DcmDataset& d) {
+    put(item(d, DCM_StructureSetROISequence, 1), DCM_ReferencedFrameOfReferenceUID, "9.9");
+  }));
+  ASSERT_TRUE(frames.ok()) << why(frames);
+  EXPECT_TRUE(says(*frames, {"'Rectum'", "9.9", "frame of reference"}));
+  EXPECT_EQ(frames->frame_of_reference, "1.2.3.4.5");
+  EXPECT_EQ(frames->rois.size(), 1U);
 }
 
 TEST(Rtstruct, a_skipped_structure_may_lie_in_another_frame) {
@@ -208,12 +241,6 @@ TEST(Rtstruct, contradicting_structures_are_refused) {
   };
   expect_refused(with([](DcmDataset& d) { put(item(d, DCM_StructureSetROISequence, 1), DCM_ROINumber, "1"); }),
                  {"two structures have ROI number 1"});
-  expect_refused(with([](DcmDataset& d) { put(item(d, DCM_ROIContourSequence, 1), DCM_ReferencedROINumber, "9"); }),
-                 {"not in the file"});
-  expect_refused(with([](DcmDataset& d) {
-                   put(item(d, DCM_StructureSetROISequence, 1), DCM_ReferencedFrameOfReferenceUID, "9.9");
-                 }),
-                 {"ROI 'Rectum'", "frame of reference"});
   expect_refused(with([](DcmDataset& d) { delete d.remove(DCM_StructureSetROISequence); }), {"no structures"});
   expect_refused(with([](DcmDataset& d) { delete d.remove(DCM_ROIContourSequence); }), {"none of its 2 structures"});
 }

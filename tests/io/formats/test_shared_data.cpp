@@ -2,6 +2,7 @@
 // Tests with real cases: every file is read as its source describes it, or fails with the right message.
 #include "files.hpp"
 #include "stylet/geom/quality.hpp"
+#include "stylet/geom/structure_slices.hpp"
 #include "stylet/io/input.hpp"
 
 #include <cstdlib>
@@ -96,7 +97,7 @@ TEST_F(SharedData, eclipse_structure_set_survives_its_ten_empty_structures) {
     ASSERT_TRUE(expected.contains(roi.name)) << roi.name;
     EXPECT_EQ(roi.contours.size(), expected.at(roi.name).first) << roi.name;
     EXPECT_NEAR(volume_cc(roi), expected.at(roi.name).second, 0.06) << roi.name;
-    EXPECT_TRUE(check_roi(roi, set.source).ok()) << why(check_roi(roi, set.source));
+    EXPECT_TRUE(structure_slices(roi, set.source).ok()) << why(structure_slices(roi, set.source));
   }
   EXPECT_EQ(set.passed_over.size(), 10U);
   EXPECT_EQ(set.frame_of_reference.substr(0, 8), "1.2.840.");
@@ -110,7 +111,7 @@ TEST_F(SharedData, vitesse_structure_set_gives_organs_and_notes_its_needles) {
   const std::map<std::string, double> expected{{"Prostate", 49.7}, {"Urethra", 1.4}, {"Rectum", 6.3}};
   for (const Roi& roi : set->rois) {
     EXPECT_NEAR(volume_cc(roi), expected.at(roi.name), 0.06) << roi.name;
-    EXPECT_TRUE(check_roi(roi, set->source).ok()) << why(check_roi(roi, set->source));
+    EXPECT_TRUE(structure_slices(roi, set->source).ok()) << why(structure_slices(roi, set->source));
   }
   // The folder also has a plan and a dose.
   EXPECT_TRUE(read_input(data_folder() / "robustbrachy_hdr_phantom").ok());

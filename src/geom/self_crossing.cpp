@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "contours/self_crossing.hpp"
+#include "geom/self_crossing.hpp"
 
 #include <algorithm>
 #include <cmath>
