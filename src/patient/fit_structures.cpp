@@ -15,9 +15,8 @@ namespace stylet::fit {
 
 namespace {
 
-constexpr double kSteps = 24.0;            // samples along the longest side of a structure
-constexpr double kLeastShareOfBox = 0.02;  // an ellipsoid has half of its box
-constexpr std::size_t kMostPoints = 800;   // kept for distances between structures
+constexpr double kSteps = 24.0;           // samples along the longest side of a structure
+constexpr std::size_t kMostPoints = 800;  // kept for distances between structures
 constexpr const char* kSkippedByUser = "named in [patient] skip";
 
 bool says_prostate(std::string_view name) {
@@ -61,8 +60,6 @@ void measure(const Roi& roi, Structure& s) {
   s.step_mm = s.box.sizes().maxCoeff() / kSteps;
   const auto samples = sample_structure(roi, s.step_mm);
   if (!samples || samples->points.empty()) return;
-  // Planes a hair apart are sampled as slabs of that thickness. Such a volume says nothing about the gland.
-  if (samples->volume_cc() < kLeastShareOfBox * s.box.volume() / 1000.0) return;
   s.volume_cc = samples->volume_cc();
   // All samples of the body are kept: a point of the gland is in the body if one of them is near.
   s.points = s.region == "body" ? samples->points : thinned(samples->points);
