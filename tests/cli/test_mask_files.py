@@ -119,7 +119,8 @@ class NoRegularFile(InFolder):
     def test_data_files(self):
         samples.nifti_mask(self.folder / "mask.nii.gz")
         os.mkfifo(self.folder / "fifo")
-        header = ("ObjectType = Image\nNDims = 3\nBinaryData = True\nOffset = 0 0 0\nElementSpacing = 1 1 1\n"
+        header = ("ObjectType = Image\nNDims = 3\nBinaryData = True\nOffset = 0 0 0\n"
+                  "TransformMatrix = 1 0 0 0 1 0 0 0 1\nElementSpacing = 1 1 1\n"
                   "DimSize = 2 2 2\nElementType = MET_UCHAR\nElementDataFile = ")
         for name, says in (("fifo", "named pipe"), ("/etc/passwd", "absolute path"), ("../x", "out of the header's folder")):
             (self.folder / "m.mhd").write_text(header + name + "\n")
