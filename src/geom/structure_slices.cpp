@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kOnePlane_mm = 0.3;     // contours whose heights differ by less lie in one plane …
 constexpr double kOnePlaneShare = 0.25;  // … if that is less than this share of the distance of slices
-constexpr double kUsualGap = 1.5;        // a gap of more usual gaps is a wide one
+constexpr double kUsualGap = 1.4;        // a gap of more usual gaps is a wide one
 constexpr double kBridgedGaps = 6;       // the widest gap that is bridged, in usual gaps …
 constexpr double kBridged_mm = 15;       // … or so wide, if that is more
 constexpr double kBridgedOverlap = 0.5;  // share of the smaller section that the sections beside a bridge share

@@ -37,7 +37,7 @@ TEST(MesherRefuses, a_structure_on_one_slice) {
   Roi flat;
   flat.name = "Prostate";
   flat.contours = {testing::circle(Vec3::Zero(), 20)};
-  expect_refused(mesh_contours(set_of({flat}), {}), {"'Prostate'", "1 slice"});
+  expect_refused(mesh_contours(set_of({flat}), {}), {"'Prostate'", "one slice only"});
 }
 
 TEST(MesherRefuses, a_roi_name_that_is_not_there) {

@@ -46,7 +46,7 @@ struct StructureSlice {
 /// - A contour that encloses nothing is left out. A loop of at most 1 mm², or half a per cent of the contour's area,
 ///   counts by the even-odd rule.
 /// - A slice stands for half of the gap to each neighbour, and for half of the usual (median) gap at the ends.
-/// - A gap of more than one and a half usual gaps is bridged if the sections on both sides overlap by half of the
+/// - A gap of more than 1.4 usual gaps is bridged if the sections on both sides overlap by half of the
 ///   smaller one and the gap is at most 15 mm, or six usual gaps if that is more. Otherwise the structure ends half a
 ///   usual gap beyond the slices on both sides of the gap.
 ///

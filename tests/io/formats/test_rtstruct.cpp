@@ -131,10 +131,10 @@ TEST(Rtstruct, empty_structures_and_open_curves_are_passed_over_with_the_reason)
   ASSERT_TRUE(set.ok()) << why(set);
   EXPECT_EQ(set->rois.size(), 2U);
   ASSERT_EQ(set->passed_over.size(), 2U);
-  EXPECT_EQ(set->passed_over[0].name, "needle A5");
-  EXPECT_NE(set->passed_over[0].why.find("open curves"), std::string::npos);
-  EXPECT_EQ(set->passed_over[1].name, "CTV");
-  EXPECT_EQ(set->passed_over[1].why, "empty");
+  EXPECT_EQ(set->passed_over[0].name, "CTV");
+  EXPECT_EQ(set->passed_over[0].why, "empty");
+  EXPECT_EQ(set->passed_over[1].name, "needle A5");
+  EXPECT_NE(set->passed_over[1].why.find("open curves"), std::string::npos);
 }
 
 TEST(Rtstruct, names_are_trimmed_and_turned_into_utf8) {
