@@ -68,9 +68,9 @@ double enclosed(const results::StructureSurface& surface) {
 
 TEST(DoseJson, has_the_documented_keys_in_their_order) {
   const auto json = nlohmann::ordered_json::parse(dose_json(implant()));
-  EXPECT_EQ(keys_of(json), (std::vector<std::string>{"seeds", "source", "formalism", "prescription_Gy", "quantity",
-                                                     "implant", "patient", "strength", "dvh", "goals", "points",
-                                                     "compare", "seed_list", "assumptions", "warnings"}));
+  EXPECT_EQ(keys_of(json), (std::vector<std::string>{"seeds", "source", "sources", "formalism", "prescription_Gy",
+                                                     "quantity", "implant", "patient", "strength", "dvh", "goals",
+                                                     "points", "compare", "seed_list", "assumptions", "warnings"}));
   EXPECT_EQ(keys_of(json["dvh"][0]),
             (std::vector<std::string>{"structure", "region", "type", "volume_cc", "D90_Gy", "D30_Gy", "D10_Gy", "D5_Gy",
                                       "D2cc_Gy", "D1cc_Gy", "D01cc_Gy", "V100_percent", "V150_percent", "V200_percent",
