@@ -207,7 +207,7 @@ Result<> run_dose(const DoseArguments& arguments, Console& console) {
   e->warnings.insert(e->warnings.end(), structures->notes.begin(), structures->notes.end());
   e->warnings.insert(e->warnings.end(), plan->notes.begin(), plan->notes.end());
   e->warnings.insert(e->warnings.end(), patient->notes.begin(), patient->notes.end());
-  e->patient = record_of_files(*patient, *plan, *source);
+  e->patient = record_of_files(*patient, *plan, sources->front());
   e->assumptions.push_back(patient_sentence(*patient));
   if (arguments.ignore_frame) e->assumptions.emplace_back("Frames of reference were not compared, as asked.");
   if (arguments.goals.empty() && !options->goals.empty()) {
