@@ -14,6 +14,7 @@ namespace {
 // 0.71. Rounding of node coordinates to single precision, the coarsest precision of file formats, leaves about this
 // much.
 constexpr double kFlat = 1e-6;
+constexpr double kSmallestMesh_mm = 5.0;  // of a mesh whose unit is known
 
 std::string number(double value) {
   char text[32];
@@ -95,7 +96,7 @@ Result<> check_coordinates(const TetMesh& mesh, const std::string& where) {
     }
     box.extend(mesh.nodes[a]);
   }
-  return check_size(box.sizes().maxCoeff(), where, "the mesh");
+  return check_size(box.sizes().maxCoeff(), where, "the mesh", 1.0, kSmallestMesh_mm);
 }
 
 // This check also catches a tetrahedron that names a node twice and whose volume is not zero because of rounding.

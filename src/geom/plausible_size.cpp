@@ -27,12 +27,12 @@ Result<> check_size(double extent_mm, const std::string& where, const std::strin
                     double smallest_mm) {
   if (!std::isfinite(extent_mm) || (extent_mm >= smallest_mm && extent_mm <= kLargestPatient_mm)) return Ok{};
   const double in_file = extent_mm / unit_mm;
-  std::string guess;
+  std::string guess = unit_mm == 1.0 ? "; its coordinates are probably not in mm" : "";
   std::string unit = "S";
   for (const Unit& candidate : kUnits) {
     const double size = in_file * candidate.mm;
     if (candidate.mm == unit_mm || size < kUsualLow_mm || size > kUsualHigh_mm) continue;
-    guess = fmt::format("; its coordinates are probably in {}", candidate.name);
+    guess = fmt::format("; its coordinates are probably in {}, not in mm", candidate.name);
     unit = fmt::format("{:g}", candidate.mm);
     break;
   }

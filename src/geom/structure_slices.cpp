@@ -47,7 +47,7 @@ std::vector<double> gaps_of(const std::vector<double>& heights) {
 
 /// Heights that differ by less than this lie in one plane [mm]. The distance of slices is the gap up to which the gaps
 /// make half of the stack's height: planes that are written twice, a little apart, have many small gaps beside it.
-double one_plane(std::vector<double> ascending) {
+double one_plane(const std::vector<double>& ascending) {
   std::vector<double> gaps = gaps_of(ascending);
   std::sort(gaps.begin(), gaps.end());
   const double half = 0.5 * std::accumulate(gaps.begin(), gaps.end(), 0.0);

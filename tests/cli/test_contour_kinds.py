@@ -54,7 +54,7 @@ class ContourKinds(InFolder):
                                     "5", "--ignore-frame-of-reference", "-o", "dose")
                 self.assertIn(words, done.stderr)
                 dose = json.loads((self.folder / "dose" / "dose.json").read_text())
-                glands = [s for s in dose["structures"] if s["taken_as"] == "prostate"]
+                glands = [s for s in dose["dvh"] if s["region"] == "prostate"]
                 self.assertEqual(len(glands), 1)
                 self.near(glands[0]["volume_cc"], volume, tolerance + 0.5)
 

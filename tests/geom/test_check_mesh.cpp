@@ -65,10 +65,10 @@ TEST(CheckMesh, refuses_not_a_number_and_infinity) {
 TEST(CheckMesh, refuses_units_off_by_a_thousand) {
   TetMesh mesh = good();
   for (Vec3& x : mesh.nodes) x /= 1000.0;
-  expect_refused(mesh, {"0.04 mm across", "metres", "millimetres"});
+  expect_refused(mesh, {"0.04 mm across", "in metres", "not in mm"});
   mesh = good();
   for (Vec3& x : mesh.nodes) x *= 1000.0;
-  expect_refused(mesh, {"40000 mm across", "micrometres"});
+  expect_refused(mesh, {"4e+04 mm across", "in micrometres", "not in mm"});
 }
 
 TEST(CheckMesh, refuses_a_node_named_twice) {

@@ -306,15 +306,21 @@ TEST(Tenting, out_of_range_is_warned_of_with_its_numbers) {
 }
 
 TEST(Tenting, of_defaults_gives_no_warning_and_of_a_held_region_none_either) {
+  const auto about_tenting = [](const Model& model) {
+    const auto& all = model.warnings();
+    return std::count_if(all.begin(), all.end(), [](const std::string& warning) {
+      return warning.find("Change them together") != std::string::npos;
+    });
+  };
   Scenario s = box_scenario();
   EXPECT_TRUE(compiled(s)->warnings().empty());
   s.tissue["pubic_arch"] = default_tissue("pubic_arch");
   s.tissue["pubic_arch"].puncture_N = 50.0;
-  EXPECT_TRUE(compiled(s)->warnings().empty()) << "bone is not punctured";
+  EXPECT_EQ(about_tenting(*compiled(s)), 0) << "bone is not punctured";
   s.tissue["prostate"] = default_tissue("prostate");
   s.tissue["prostate"].puncture_N = 30.0;
   const auto model = compiled(s);
-  EXPECT_EQ(model->warnings().size(), 1u);
+  EXPECT_EQ(about_tenting(*model), 1);
   EXPECT_EQ(model->info().warnings, model->warnings());
 }
 

@@ -108,7 +108,11 @@ Result<MeshWithNotes> finish_mesh(RawMesh raw, const std::string& source, const 
   Eigen::AlignedBox3d box;
   for (const Vec3& x : raw.nodes) box.extend(x);
   if (!box.isEmpty()) {
-    if (Result<> size = check_size(box.sizes().maxCoeff(), source, "the mesh", scale); !size) return size.error();
+    // Where the unit is stated, check_mesh() judges the size, too, and takes a smaller one.
+    const bool stated = options.scale != 0.0 || raw.unit_mm != 0.0;
+    const double smallest_mm = stated ? 0.5 * kSmallestPatient_mm : kSmallestPatient_mm;
+    if (Result<> size = check_size(box.sizes().maxCoeff(), source, "the mesh", scale, smallest_mm); !size)
+      return size.error();
   }
   for (std::size_t a = 0; a < raw.nodes.size(); ++a) {
     if (is_in_reach(raw.nodes[a])) continue;
