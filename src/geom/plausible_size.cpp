@@ -32,7 +32,7 @@ Result<> check_size(double extent_mm, const std::string& where, const std::strin
   for (const Unit& candidate : kUnits) {
     const double size = in_file * candidate.mm;
     if (candidate.mm == unit_mm || size < kUsualLow_mm || size > kUsualHigh_mm) continue;
-    guess = fmt::format("; its coordinates are probably in {}, not in mm", candidate.name);
+    guess = fmt::format("; its coordinates are probably in {}{}", candidate.name, unit_mm == 1.0 ? ", not in mm" : "");
     unit = fmt::format("{:g}", candidate.mm);
     break;
   }

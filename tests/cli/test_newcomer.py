@@ -136,7 +136,7 @@ class Mistakes(InFolder):
 
     def test_a_wrong_scale_names_the_key_of_the_scenario(self):
         self.refuse("insert", "block.toml", "--set", "patient.scale=1000",
-                    says=["with a unit of 1000 mm", "10 to 2000 mm is expected", "probably in millimetres",
+                    says=["with a unit of 1000 mm", "5 to 2000 mm is expected", "probably in millimetres",
                           "patient.scale = 1 in a scenario"])
         block_mesh(self.folder / "metres.msh", size=0.06)
         for words in (["insert", self.write("metres.toml", BLOCK.replace("block.msh", "metres.msh"))],
