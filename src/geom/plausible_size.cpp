@@ -11,7 +11,7 @@ namespace stylet {
 namespace {
 
 // A patient between knee and navel, or a phantom, has a size between these; a unit that gives such a size is named.
-constexpr double kUsualLow_mm = 40.0;
+constexpr double kUsualLow_mm = 25.0;
 constexpr double kUsualHigh_mm = 1500.0;
 
 struct Unit {

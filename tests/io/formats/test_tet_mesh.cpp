@@ -53,7 +53,7 @@ TEST(TetMesh, the_scale_turns_metres_into_mm) {
   TetMesh mesh = two_region_box();
   for (Vec3& x : mesh.nodes) x *= 1e-3;
   const fs::path path = write_file(folder / "metres.msh", msh22_text(mesh));
-  expect_refused(read_tet_mesh(path), {"0.04 units across", "metres", "--scale 1000"});
+  expect_refused(read_tet_mesh(path), {"0.04 mm across", "metres", "--scale 1000"});
   const Result<TetMesh> read = read_tet_mesh(path, {.scale = 1000.0});
   ASSERT_TRUE(read.ok()) << why(read);
   EXPECT_NEAR(extent(*read), 40.0, 1e-9);
@@ -66,9 +66,9 @@ TEST(TetMesh, a_size_that_cannot_be_mm_is_refused_with_the_scale_to_pass) {
     for (Vec3& x : mesh.nodes) x *= factor;
     return read_tet_mesh(write_file(folder / "m.msh", msh22_text(mesh)));
   };
-  expect_refused(scaled(0.1), {"4 units across", "--scale 10"});
-  expect_refused(scaled(1e3), {"4e+04 units across", "--scale 0.001"});
-  expect_refused(read_tet_mesh(folder / "m.msh", {.scale = 1.0}), {"40000 mm across"});
+  expect_refused(scaled(0.1), {"4 mm across", "--scale 10"});
+  expect_refused(scaled(1e3), {"4e+04 mm across", "--scale 0.001"});
+  expect_refused(read_tet_mesh(folder / "m.msh", {.scale = 1.0}), {"4e+04 mm across"});
 }
 
 TEST(TetMesh, a_scale_that_is_no_length_is_refused) {
