@@ -277,7 +277,7 @@ class Implant(InFolder):
         self.case(plan="# source: i125_6711\n# strength_U: 0.5\nx_mm,y_mm,z_mm,needle\n0,0,0,D4\n0,0,1,D4\n")
         self.refuse("implant", "case.toml", "-o", "out", says=["needle D4", "1.00 mm apart"])
         self.case(plan=PLAN.replace("0.0 0.2 20.0", "0.0 900 20.0"))
-        self.refuse("implant", "case.toml", "-o", "out", says=["plan.csv", "away from all structures"])
+        self.refuse("implant", "case.toml", "-o", "out", says=["plan.csv", "away from the target", "other patient"])
         self.case()
         self.refuse("implant", "case.toml", "-o", "out", "--span", "--set", "tissue.preset=soft", says=["preset"])
         self.refuse("insert", "case.toml", "-o", "out", says=["stylet implant"])
