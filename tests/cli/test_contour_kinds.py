@@ -56,7 +56,7 @@ class ContourKinds(InFolder):
                 dose = json.loads((self.folder / "dose" / "dose.json").read_text())
                 glands = [s for s in dose["dvh"] if s["region"] == "prostate"]
                 self.assertEqual(len(glands), 1)
-                self.near(glands[0]["volume_cc"], volume, tolerance + 0.5)
+                self.near(glands[0]["volume_cc"], volume, 1)  # the samples of the dose are half a millimetre apart
 
     def near(self, value, right, percent):
         self.assertAlmostEqual(value, right, delta=right * percent / 100)
