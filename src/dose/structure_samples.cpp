@@ -47,7 +47,7 @@ Result<StructureSamples> sample_structure(const Roi& roi, double step_mm) {
     for (const Polygon& polygon : slice.polygons) {
       for (const Eigen::Vector2d& x : polygon) box.extend(x);
     }
-    const double thickness = slice.to - slice.from;
+    const double thickness = slice.thickness();
     const int layers = std::max(1, static_cast<int>(std::ceil(thickness / step_mm - 1e-9)));
     const double area_bound = box.sizes().prod() / (step_mm * step_mm);
     if (static_cast<double>(samples.points.size()) + area_bound * layers > dose::kMostSamples)
@@ -60,7 +60,7 @@ Result<StructureSamples> sample_structure(const Roi& roi, double step_mm) {
       for (std::size_t pair = 0; pair + 1 < at.size(); pair += 2) {
         for (double column = std::ceil(at[pair] / step_mm - 0.5); middle(column) < at[pair + 1]; ++column) {
           for (int layer = 0; layer < layers; ++layer) {
-            const double h = slice.from + (layer + 0.5) * thickness / layers;
+            const double h = slice.height - slice.below + (layer + 0.5) * thickness / layers;
             samples.points.push_back(meant->frame.lps(Vec3(middle(column), middle(row), h)));
             samples.volume_mm3.push_back(volume);
           }

@@ -284,9 +284,9 @@ Arrangement arrange(const std::vector<Polygon>& contours) {
 
 double signed_area(const Polygon& polygon) {
   double sum = 0;
-  for (std::size_t k = 1; k + 1 < polygon.size(); ++k) {
-    const Eigen::Vector2d a = polygon[k] - polygon[0];
-    const Eigen::Vector2d b = polygon[k + 1] - polygon[0];
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Eigen::Vector2d& a = polygon[k];
+    const Eigen::Vector2d& b = polygon[(k + 1) % polygon.size()];
     sum += 0.5 * (a.x() * b.y() - b.x() * a.y());
   }
   return sum;

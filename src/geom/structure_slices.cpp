@@ -116,7 +116,8 @@ class SliceBuilder {
  private:
   /// A contour in its plane.
   struct Flat {
-    double height;
+    double height;  ///< [mm] middle of its points' heights, exact where they are all the same
+    double mean;    ///< [mm] their mean
     std::vector<Polygon> polygons;
   };
 
@@ -200,12 +201,16 @@ class SliceBuilder {
     for (const std::size_t i : sound_) {
       const Contour& contour = roi_.contours[i];
       if (Result<> r = detail::check_plane(contour, normal, place(i)); !r) return r.error();
-      Flat flat{0, {{}}};
+      Flat flat{0, 0, {{}}};
+      double low = HUGE_VAL, high = -HUGE_VAL;
       for (const Vec3& x : contour.points) {
         const Vec3 local = out_.frame.local(x);
         flat.polygons.front().emplace_back(local.x(), local.y());
-        flat.height += local.z() / static_cast<double>(contour.points.size());
+        flat.mean += local.z() / static_cast<double>(contour.points.size());
+        low = std::min(low, local.z());
+        high = std::max(high, local.z());
       }
+      flat.height = 0.5 * (low + high);
       if (const auto crossing = detail::find_self_crossing(flat.polygons.front(), kCrossing_mm)) {
         detail::EvenOdd whole = detail::even_odd(flat.polygons.front());
         const Vec3 at = out_.frame.lps(Vec3(crossing->point.x(), crossing->point.y(), flat.height));
@@ -231,12 +236,15 @@ class SliceBuilder {
     const double tolerance = one_plane(heights);
     for (std::size_t first = 0, end = 0; first < flat_.size(); first = end) {
       StructureSlice slice;
+      double mean = 0;
       std::vector<Polygon> contours;
       for (; end < flat_.size() && flat_[end].height - flat_[first].height < std::max(tolerance, 1e-9); ++end) {
         slice.height += flat_[end].height;
+        mean += flat_[end].mean;
         std::move(flat_[end].polygons.begin(), flat_[end].polygons.end(), std::back_inserter(contours));
       }
       slice.height /= static_cast<double>(end - first);
+      means_.push_back(mean / static_cast<double>(end - first));
       detail::PlaneSection section = detail::plane_section(contours);
       const std::string at = slice_at(slice.height);
       if (flat_[end - 1].height - flat_[first].height > 1e-3) heights_.at(at);
@@ -259,11 +267,10 @@ class SliceBuilder {
   void set_ends() {
     std::vector<StructureSlice>& slices = out_.slices;
     std::vector<double> gaps;
-    for (std::size_t k = 1; k < slices.size(); ++k) gaps.push_back(slices[k].height - slices[k - 1].height);
+    for (std::size_t k = 1; k < means_.size(); ++k) gaps.push_back(means_[k] - means_[k - 1]);
     out_.usual_gap_mm = median(gaps);
     const double usual = out_.usual_gap_mm;
-    slices.front().from = slices.front().height - 0.5 * usual;
-    slices.back().to = slices.back().height + 0.5 * usual;
+    slices.front().below = slices.back().above = 0.5 * usual;
     for (std::size_t k = 0; k + 1 < slices.size(); ++k) {
       StructureSlice& low = slices[k];
       StructureSlice& high = slices[k + 1];
@@ -275,9 +282,7 @@ class SliceBuilder {
             detail::common_area(low.polygons, high.polygons) >= kBridgedOverlap * std::min(low.area_mm2, high.area_mm2);
         (low.joins_next ? bridged_ : apart_).at(between);
       }
-      const double reach = low.joins_next ? 0.5 * gaps[k] : 0.5 * usual;
-      low.to = low.height + reach;
-      high.from = high.height - reach;
+      low.above = high.below = low.joins_next ? 0.5 * gaps[k] : 0.5 * usual;
     }
   }
 
@@ -302,6 +307,7 @@ class SliceBuilder {
   std::string where_;
   std::vector<std::size_t> sound_;  // numbers of the contours that enclose something
   std::vector<Flat> flat_;
+  std::vector<double> means_;  // of the slices: the mean heights of their points, between which gaps are measured
   StructureSlices out_;
   Remark empty_, loops_, heights_, twice_, united_, holes_, parts_, bridged_, apart_;
 };

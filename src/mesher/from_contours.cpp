@@ -15,13 +15,41 @@ namespace {
 
 constexpr double kWholeGland = 0.85;  // if zones make up this share of the gland, they replace it
 
-/// A polygon without the points that cull() drops.
-Polygon culled(const Polygon& polygon, double tolerance_mm) {
+/// A polygon of a slice as a contour in space, without the points that cull() drops.
+Contour culled(const Polygon& polygon, double height, const SliceFrame& frame, double tolerance_mm) {
   Contour contour;
-  for (const Eigen::Vector2d& x : polygon) contour.points.emplace_back(x.x(), x.y(), 0.0);
-  Polygon few;
-  for (const Vec3& x : cull(contour, tolerance_mm).points) few.emplace_back(x.x(), x.y());
-  return few;
+  for (const Eigen::Vector2d& x : polygon) contour.points.push_back(frame.lps(Vec3(x.x(), x.y(), height)));
+  return cull(contour, tolerance_mm);
+}
+
+/// The mean of a contour's heights along the slice normal.
+double height_of(const Contour& contour, const SliceFrame& frame) {
+  double height = 0;
+  for (const Vec3& x : contour.points) height += frame.local(x).z() / static_cast<double>(contour.points.size());
+  return height;
+}
+
+/// Drops the points of all slices that cull() drops. Heights and usual gap are measured anew on the points that are
+/// kept: a mesh depends on the last bits of them, and those of regular contours shall stay as they are.
+void cull_slices(StructureSlices& stack, double tolerance_mm, Structure& structure, Anatomy& anatomy) {
+  std::vector<double> gaps;
+  for (StructureSlice& slice : stack.slices) {
+    double lowest = HUGE_VAL;
+    for (Polygon& polygon : slice.polygons) {
+      anatomy.contour_points += static_cast<Index>(polygon.size());
+      const Contour kept = culled(polygon, slice.height, stack.frame, tolerance_mm);
+      anatomy.contour_points_kept += static_cast<Index>(kept.points.size());
+      structure.boundary.insert(structure.boundary.end(), kept.points.begin(), kept.points.end());
+      polygon.clear();
+      for (const Vec3& x : kept.points) polygon.push_back(stack.frame.local(x).head<2>());
+      lowest = std::min(lowest, height_of(kept, stack.frame));
+    }
+    slice.height = lowest;
+    if (&slice != &stack.slices.front()) gaps.push_back(slice.height - (&slice - 1)->height);
+  }
+  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
+  std::nth_element(gaps.begin(), middle, gaps.end());
+  stack.usual_gap_mm = *middle;
 }
 
 /// Makes the structure of one ROI.
@@ -38,15 +66,8 @@ Result<Structure> structure_of(const RoiChoice& choice, const SliceFrame& frame,
   s.input_volume = meant->volume_mm3();
   s.whole_volume = s.input_volume;
   double largest = 0;
-  for (StructureSlice& slice : meant->slices) {
-    largest = std::max(largest, slice.area_mm2);
-    for (Polygon& polygon : slice.polygons) {
-      anatomy.contour_points += static_cast<Index>(polygon.size());
-      polygon = culled(polygon, options.cull_tolerance_mm);
-      anatomy.contour_points_kept += static_cast<Index>(polygon.size());
-      for (const auto& x : polygon) s.boundary.push_back(frame.lps(Vec3(x.x(), x.y(), slice.height)));
-    }
-  }
+  for (const StructureSlice& slice : meant->slices) largest = std::max(largest, slice.area_mm2);
+  cull_slices(*meant, options.cull_tolerance_mm, s, anatomy);
   if (!(s.input_volume > 1.0)) {
     return input_error(where, fmt::format("the contours enclose {:.3g} mm³, expected more than 1 mm³", s.input_volume),
                        "Check the contours and their units (mm)" + or_skip(roi.name));

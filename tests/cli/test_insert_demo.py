@@ -23,7 +23,7 @@ class Demo(InFolder):
                           ("puncture", "prostate"), ("region_entered", "prostate"), ("retraction_start", ""),
                           ("slip_start", ""), ("withdrawn", "")])
         self.assertEqual([w.split(":")[0] for w in summary["warnings"]],
-                         ["Soft tissue that the input does not have was added"])
+                         ["Structure 'Pubic arch'", "Soft tissue that the input does not have was added"])
         force = {(e["kind"], e["region"]): e["force_N"] for e in summary["events"]}
         self.assertAlmostEqual(force["puncture", "subcutaneous_fat"], 2.8, delta=0.05)
         self.assertGreater(force["retraction_start", ""], 0, "still pushing when the retraction starts")

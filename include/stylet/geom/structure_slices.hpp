@@ -27,14 +27,15 @@ using Polygon = std::vector<Eigen::Vector2d>;
 /// A structure in one plane, and the slab of the structure that this plane stands for.
 struct StructureSlice {
   double height = 0;  ///< [mm] of the plane along the slice normal
-  double from = 0;    ///< [mm] lower end of the slab
-  double to = 0;      ///< [mm] upper end of the slab
+  double below = 0;   ///< [mm] the slab reaches this far below the plane
+  double above = 0;   ///< [mm] … and above it
   /// They do not cross each other; a point is inside where an odd number of them surround it.
   std::vector<Polygon> polygons;
   double area_mm2 = 0;      ///< of the points that are inside
   bool joins_next = false;  ///< whether the structure continues to the next slice of the stack
 
-  [[nodiscard]] double volume_mm3() const { return area_mm2 * (to - from); }
+  [[nodiscard]] double thickness() const { return below + above; }
+  [[nodiscard]] double volume_mm3() const { return area_mm2 * thickness(); }
 };
 
 /// The slices of a structure: what its contours mean. Everything that measures, meshes or samples contours uses them.
