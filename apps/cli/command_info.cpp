@@ -21,6 +21,7 @@ struct InfoArguments {
   std::string file;
   double scale = 0;
   int volume = 0;
+  std::string regions_from;
   std::vector<std::string> skip;
   bool scenario = false;
   std::string output;
@@ -61,6 +62,12 @@ Result<> not_a_mistyped_source(const std::string& word) {
                      "stylet info sources lists the source models");
 }
 
+/// @param notes receives the reader's sentences about a mesh or surfaces; contours and masks hold their own
+Result<PatientInput> patient_of(const InfoArguments& arguments, std::vector<std::string>& notes) {
+  return read_input(arguments.file, {.scale = arguments.scale, .notes = &notes, .regions_from = arguments.regions_from},
+                    {.volume = arguments.volume}, arguments.skip);
+}
+
 Result<Description> description_of(const InfoArguments& arguments) {
   if (arguments.file == "sources") return describe_known_sources();
   if (const Result<SourceModel> known = find_source(arguments.file); known) return describe(*known);
@@ -86,10 +93,14 @@ Result<Description> description_of(const InfoArguments& arguments) {
     if (!run) return run.error();
     return describe(*run);
   }
-  const Result<PatientInput> input =
-      read_input(arguments.file, {.scale = arguments.scale}, {.volume = arguments.volume}, arguments.skip);
+  std::vector<std::string> notes;
+  const Result<PatientInput> input = patient_of(arguments, notes);
   if (!input) return input.error();
   Description out = std::visit([](const auto& content) { return describe(content); }, *input);
+  for (const std::string& note : notes) {
+    out.json["notes"].push_back(note);
+    out.text += "\n  note: " + note;
+  }
   add_fit(*input, arguments, out);
   return out;
 }
@@ -108,12 +119,12 @@ Result<> run_draft(const InfoArguments& arguments, Console& console) {
   if (!arguments.output.empty()) {
     if (Result<> writable = check_output_file(arguments.output); !writable) return writable;
   }
-  const Result<PatientInput> input =
-      read_input(arguments.file, {.scale = arguments.scale}, {.volume = arguments.volume}, arguments.skip);
+  std::vector<std::string> notes;
+  const Result<PatientInput> input = patient_of(arguments, notes);
   if (!input) return input.error();
   const Result<ScenarioDraft> draft =
       draft_scenario(*input, {arguments.file, source_for(arguments.file, arguments.output), arguments.scale,
-                              arguments.volume, arguments.skip});
+                              arguments.volume, arguments.regions_from, arguments.skip, notes});
   if (!draft) return draft.error();
   for (const std::string& warning : draft->warnings) console.warn(warning);
   if (arguments.output.empty()) {
@@ -156,6 +167,7 @@ Command add_info_command(CLI::App& program) {
       ->type_name("S")
       ->check(number_between(1e-6, 1e6, "mm"));
   add_volume_option(*app, arguments->volume);
+  add_regions_from_option(*app, arguments->regions_from);
   app->add_option("--skip", arguments->skip,
                   "Ignore the structure NAME if it is damaged; with --scenario leave it out in any case; may be "
                   "repeated")

@@ -30,6 +30,7 @@ struct MeshArguments {
   std::string preset;  ///< empty = not given
   double scale = 0;    ///< 0 = not given
   int volume = 0;      ///< 0 = not given
+  std::string regions_from;
   std::vector<std::string> regions;
   std::vector<std::string> skip;
   double cull_mm = -1;  ///< < 0 = not given
@@ -122,7 +123,8 @@ Result<> run_mesh(const MeshArguments& arguments, Console& console) {
 
   const auto start = std::chrono::steady_clock::now();
   const Result<PatientFile> input =
-      read_patient(arguments.input, {.scale = arguments.scale}, options, {.volume = arguments.volume});
+      read_patient(arguments.input, {.scale = arguments.scale, .regions_from = arguments.regions_from}, options,
+                   {.volume = arguments.volume});
   if (!input) return input.error();
   Result<MeshedAnatomy> model =
       std::visit([&](const auto& content) { return model_of(content, arguments, options, console); }, input->content);
@@ -168,9 +170,10 @@ Command add_mesh_command(CLI::App& program) {
       ->type_name("S")
       ->check(number_between(1e-6, 1e6, "mm"));
   add_volume_option(*app, arguments->volume);
+  add_regions_from_option(*app, arguments->regions_from);
   app->add_option("--region", arguments->regions,
                   "Take the structure, label or region NAME as CANONICAL, e.g. 'PTV 1=prostate' or 2=prostate; may be "
-                  "repeated; the others are recognised by their names")
+                  "repeated, also to make one region of several; the others are recognised by their names")
       ->type_name("NAME=CANONICAL")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

@@ -4,6 +4,8 @@
 #include "output_path.hpp"
 #include "progress_display.hpp"
 
+#include "stylet/core/printable.hpp"
+
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -42,9 +44,11 @@ struct Console::Parts {
   std::set<std::string> told;              ///< warnings that were given ahead
   std::weak_ptr<ProgressDisplay> display;  ///< exists while progress may be reported
 
-  /// Prints a line. @return the reason if it could not be printed, otherwise empty
+  /// Prints a line. Every text of the program passes here on its way to the terminal, so this is where control
+  /// characters that a file has brought into it are replaced. @return the reason if it could not be printed, otherwise
+  /// empty
   std::string line(std::FILE* stream, std::string_view prefix, std::string_view text) const {
-    const std::string all = fmt::format("{}{}\n", prefix, text);
+    const std::string all = fmt::format("{}{}\n", prefix, printable_lines(text));
     std::string reason;
     const auto print = [&] {
       if (std::fwrite(all.data(), 1, all.size(), stream) == all.size() && std::fflush(stream) == 0) return;
@@ -111,7 +115,7 @@ Progress Console::progress() {
   if (parts_->options.quiet) return {};
   auto display = std::make_shared<ProgressDisplay>(stderr_is_terminal());
   parts_->display = display;
-  return [display](std::string_view stage, double fraction) { display->update(stage, fraction); };
+  return [display](std::string_view stage, double fraction) { display->update(printable(stage), fraction); };
 }
 
 Result<> Console::write_json(const Json& json) {
@@ -120,7 +124,8 @@ Result<> Console::write_json(const Json& json) {
   // Names from files may be in any encoding; JSON is UTF-8.
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
   if (target != "-") return write_text_file(target, text);
-  if (!write_all(parts_->json_descriptor, text)) {
+  // JSON escapes the control characters of ASCII only.
+  if (!write_all(parts_->json_descriptor, printable_lines(text))) {
     return failure("--json -", std::string("writing to standard output failed: ") + std::strerror(errno),
                    "Check the file or program that receives it");
   }

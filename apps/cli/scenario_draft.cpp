@@ -314,6 +314,9 @@ std::string patient_text(const Contents& contents, const DraftSource& source) {
   std::string out = fmt::format("\n[patient]\nsource = {}  # {}\n", toml_text(source.source), contents.kind);
   if (source.scale > 0.0) out += fmt::format("scale = {}  # length of the file's unit [mm]\n", source.scale);
   if (source.volume > 0) out += fmt::format("volume = {}  # number of the volume in the file, from 1\n", source.volume);
+  if (!source.regions_from.empty())
+    out += fmt::format("regions_from = {}  # array that is the regions\n", toml_text(source.regions_from));
+  for (const std::string& note : source.notes) out += comment(note);
   for (const std::string& remark : contents.remarks) out += comment(remark);
   if (!contents.skip.empty()) {
     out += comment("Left out:");

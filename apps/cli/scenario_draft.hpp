@@ -11,11 +11,13 @@ namespace stylet::cli {
 
 /// The source of the patient of a drafted scenario.
 struct DraftSource {
-  std::string file;               ///< file name that the user gave
-  std::string source;             ///< value of patient.source in the scenario
-  double scale = 0.0;             ///< [mm] unit of a mesh file; 0: the file's own
-  int volume = 0;                 ///< volume of a mask file with several, counted from 1; 0: the only one
-  std::vector<std::string> skip;  ///< structures or labels that the user leaves out
+  std::string file;                  ///< file name that the user gave
+  std::string source;                ///< value of patient.source in the scenario
+  double scale = 0.0;                ///< [mm] unit of a mesh file; 0: the file's own
+  int volume = 0;                    ///< volume of a mask file with several, counted from 1; 0: the only one
+  std::string regions_from{};        ///< array of a mesh file that is its regions; empty: as the file says
+  std::vector<std::string> skip;     ///< structures or labels that the user leaves out
+  std::vector<std::string> notes{};  ///< of the reader, for comments
 };
 
 /// patient.source for a scenario that is written to `output`. The path is relative to the scenario's folder, so that

@@ -61,4 +61,11 @@ void add_volume_option(CLI::App& app, int& volume) {
       ->check(whole_number_between(1, 1'000'000));
 }
 
+void add_regions_from_option(CLI::App& app, std::string& name) {
+  app.add_option("--regions-from", name,
+                 "Array of a mesh file that is its regions: cell array (VTU, VTK), $ElementData (gmsh), 'attribute N' "
+                 "(TetGen) (default: the format's own regions, or the only array of whole numbers that can be them)")
+      ->type_name("NAME");
+}
+
 }  // namespace stylet::cli

@@ -21,4 +21,7 @@ CLI::Validator one_of(std::vector<std::string> words);
 /// Adds the option --volume, which chooses one volume of a mask file with several.
 void add_volume_option(CLI::App& app, int& volume);
 
+/// Adds the option --regions-from, which chooses the array of a mesh file that is its regions.
+void add_regions_from_option(CLI::App& app, std::string& name);
+
 }  // namespace stylet::cli

@@ -104,6 +104,15 @@ std::vector<std::size_t> find_named(std::span<const std::string> names, std::str
   return equal.empty() ? alike : equal;
 }
 
+std::vector<std::size_t> find_region(std::span<const std::string> names, std::string_view word) {
+  std::vector<std::size_t> found = find_named(names, word);
+  const std::string_view number = trimmed(word);
+  const std::string_view digits = number.substr(number.starts_with('-') ? 1 : 0);
+  if (!found.empty() || digits.empty() || digits.find_first_not_of("0123456789") != std::string_view::npos)
+    return found;
+  return find_named(names, fmt::format("region {}", number));
+}
+
 bool is_listed(std::string_view name, std::span<const std::string> words) {
   if (trimmed(name).empty()) return false;
   return std::any_of(words.begin(), words.end(), [&](const std::string& word) { return same(name, word); });

@@ -7,6 +7,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+
 namespace stylet {
 
 namespace fs = std::filesystem;
@@ -52,6 +55,14 @@ Result<PatientInput> read_input(const fs::path& path, const MeshReadOptions& mes
     return input_error(path.string(),
                        fmt::format("this is {}; only a mask has volumes to choose from", detail::name_of(*kind)),
                        "Leave the volume out (patient.volume, --volume)");
+  }
+  constexpr std::array meshes{FileKind::vtu, FileKind::vtk_legacy, FileKind::gmsh, FileKind::medit, FileKind::tetgen};
+  if (!mesh_options.regions_from.empty() && *kind != FileKind::unknown &&
+      std::find(meshes.begin(), meshes.end(), *kind) == meshes.end()) {
+    return input_error(path.string(),
+                       fmt::format("this is {}; only a tetrahedral mesh has arrays ('{}') that can be its regions",
+                                   detail::name_of(*kind), mesh_options.regions_from),
+                       "Leave out --regions-from or patient.regions_from");
   }
   switch (*kind) {
     case FileKind::dicom:

@@ -7,6 +7,7 @@
 #include "mesh/gmsh_library.hpp"
 #include "mesh/raw_mesh.hpp"
 #include "mesh/surfaces.hpp"
+#include "stylet/core/printable.hpp"
 #include "stylet/geom/structure_names.hpp"
 
 #include <fmt/format.h>
@@ -41,10 +42,27 @@ Result<> check_reach(const ContourSet& set, const Roi& roi) {
   return Ok{};
 }
 
-/// Checks the reach of all structures, for every format. A structure in `skip` that is out of reach is left out
-/// instead.
+void make_printable(std::vector<std::string>& texts) {
+  for (std::string& text : texts) text = printable(text);
+}
+
+/// Makes the names of labels safe to show.
+Result<LabelImage> with_printable_names(Result<LabelImage> read) {
+  if (!read) return read;
+  for (auto& [label, name] : read->names) name = printable(name);
+  for (auto& [label, meaning] : read->meanings) meaning = printable(meaning);
+  make_printable(read->notes);
+  return read;
+}
+
+/// Makes the names safe to show and checks the reach of all structures, for every format. A structure in `skip` that is
+/// out of reach is left out instead.
 Result<ContourSet> within_reach(Result<ContourSet> read, std::span<const std::string> skip) {
   if (!read) return read;
+  read->label = printable(read->label);
+  for (Roi& roi : read->rois) roi.name = printable(roi.name);
+  for (PassedOver& structure : read->passed_over) structure.name = printable(structure.name);
+  make_printable(read->notes);
   std::vector<Roi> in_reach;
   for (Roi& roi : read->rois) {
     const Result<> reach = check_reach(*read, roi);
@@ -88,13 +106,13 @@ Result<LabelImage> read_label_image(const fs::path& path, const MaskReadOptions&
   if (!kind) return kind.error();
   switch (*kind) {
     case FileKind::dicom:
-      return guarded<LabelImage>(path, [&] { return detail::parse_dicom_seg(path, options); });
+      return with_printable_names(guarded<LabelImage>(path, [&] { return detail::parse_dicom_seg(path, options); }));
     case FileKind::nifti:
-      return guarded<LabelImage>(path, [&] { return detail::parse_nifti(path, options); });
+      return with_printable_names(guarded<LabelImage>(path, [&] { return detail::parse_nifti(path, options); }));
     case FileKind::nrrd:
-      return guarded<LabelImage>(path, [&] { return detail::parse_nrrd(path, options); });
+      return with_printable_names(guarded<LabelImage>(path, [&] { return detail::parse_nrrd(path, options); }));
     case FileKind::metaimage:
-      return guarded<LabelImage>(path, [&] { return detail::parse_metaimage(path, options); });
+      return with_printable_names(guarded<LabelImage>(path, [&] { return detail::parse_metaimage(path, options); }));
     default:
       return wrong_kind(path, *kind, "a label mask (NIfTI, NRRD, MetaImage, DICOM SEG)");
   }
@@ -132,6 +150,7 @@ Result<TetMesh> read_tet_mesh(const fs::path& path, const MeshReadOptions& optio
     return detail::finish_mesh(std::move(*raw), path.string(), options);
   });
   if (!read) return read.error();
+  make_printable(read->notes);
   if (options.notes != nullptr) options.notes->insert(options.notes->end(), read->notes.begin(), read->notes.end());
   return std::move(read->mesh);
 }
@@ -157,6 +176,8 @@ Result<std::vector<Surface>> read_surfaces(const fs::path& path, const MeshReadO
   }
   Result<SurfacesWithNotes> read = guarded<SurfacesWithNotes>(path, parse);
   if (!read) return read.error();
+  for (Surface& surface : read->surfaces) surface.name = printable(surface.name);
+  make_printable(read->notes);
   if (options.notes != nullptr) options.notes->insert(options.notes->end(), read->notes.begin(), read->notes.end());
   return std::move(read->surfaces);
 }

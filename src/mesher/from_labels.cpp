@@ -106,6 +106,24 @@ SliceFields fields_of(const LabelImage& image, const Slices& s, Inside&& inside)
   return f;
 }
 
+/// What the user should know about a region of plates one slice thick, of which a mesh keeps little; empty if fewer
+/// than half of its slices are such plates.
+std::string plates_note(const std::string& name, const SliceFields& f) {
+  const std::size_t count = f.fields.size();
+  const auto filled = [&](std::size_t k) { return k < count && !f.fields[k].empty(); };
+  std::size_t slices = 0, alone = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (!filled(k)) continue;
+    ++slices;
+    if (!filled(k + 1) && (k == 0 || !filled(k - 1))) ++alone;
+  }
+  if (alone < 2 || 2 * alone < slices) return {};
+  return fmt::format(
+      "The region '{}' has {} slices, of which {} are plates of one slice: the slices beside them have nothing of it. "
+      "The mesh keeps little of such plates. Fill the slices between them.",
+      name, slices, alone);
+}
+
 /// Points where the smoothed surface crosses pixel rows and columns of the slices.
 std::vector<Vec3> boundary_points(const GridShape& g, double offset, const SliceFields& f) {
   std::vector<Vec3> points;
@@ -199,6 +217,7 @@ Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, 
     if (name == "body") continue;
     const SliceFields own = fields_of(image, s, [&](int l) { return set.contains(l); });
     auto shape = interpolate_fields(own, step, sigma);
+    if (std::string plates = plates_note(name, own); !plates.empty()) anatomy.notes.push_back(std::move(plates));
     const bool islands = drop_small_islands(*shape, kSmallIsland) > 0;
     if (!(shape->inner_radius() > 0.5 * step)) {
       anatomy.notes.push_back(

@@ -107,8 +107,10 @@ Result<> add_structures(const TetMesh& mesh, const DoseStructureOptions& options
     report(progress, "structures", static_cast<double>(k) / static_cast<double>(mesh.regions.size()));
     const std::string& name = mesh.regions[k];
     if (is_listed(name, options.skip)) continue;
-    const auto assigned = options.regions.find(name);
-    const std::string region = assigned != options.regions.end() ? assigned->second : canonical_region(name);
+    std::string region = canonical_region(name);
+    for (const auto& [word, assigned] : options.regions) {
+      if (!find_region(std::vector{name}, word).empty()) region = assigned;
+    }
     keep(out, {name, region, "", {}, {128, 128, 128}, {}},
          sampled(options.step_mm, [&](double step) { return sample_structure(mesh, static_cast<int>(k), step); }),
          volumes[k]);

@@ -120,10 +120,11 @@ Structures read(const TetMesh& mesh, const MeshOptions& names) {
   for (const std::string& name : mesh.regions) {
     StructureUse use{.name = name, .region = canonical_region(name)};
     for (const auto& [key, region] : names.regions) {
-      if (is_listed(name, std::vector{key})) use.region = region_meant(region);
+      if (!find_region(std::vector{name}, key).empty()) use.region = region_meant(region);
     }
     if (use.region.empty() && name.starts_with("label_")) use.region = name;
-    out.all.push_back(named(use, "", names));
+    const std::string number = name.starts_with("region ") ? name.substr(7) : "";
+    out.all.push_back(named(use, number, names));
   }
   for (Index t = 0; t < mesh.tet_count(); ++t) {
     Structure& s = out.all[static_cast<std::size_t>(mesh.tet_region[static_cast<std::size_t>(t)])];

@@ -17,8 +17,9 @@ namespace {
 
 Result<PatientInput> patient_input(const Scenario& scenario) {
   if (scenario.patient.source == "phantom") return PatientInput(demo_patient());
-  return read_input(scenario.patient.source, {.scale = scenario.patient.scale}, {.volume = scenario.patient.volume},
-                    scenario.patient.skip);
+  return read_input(scenario.patient.source,
+                    {.scale = scenario.patient.scale, .regions_from = scenario.patient.regions_from},
+                    {.volume = scenario.patient.volume}, scenario.patient.skip);
 }
 
 Result<DoseStructures> structures_of(const Scenario& scenario, const DosePlan& plan, const Progress& progress) {

@@ -12,29 +12,56 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 namespace stylet {
 
 namespace {
 
-Result<> rename_regions(TetMesh& mesh, const std::map<std::string, std::string>& names, const std::string& where) {
+/// Gives regions of a mesh other names. Regions to which the user gives the same name become one.
+/// @return sentences for the user about these
+Result<std::vector<std::string>> rename_regions(TetMesh& mesh, const std::map<std::string, std::string>& names,
+                                                const std::string& where) {
   const std::vector<std::string> in_file = mesh.regions;
+  std::set<std::string> asked;  // regions of the file that the user names
   for (const auto& [name, canonical] : names) {
-    const auto found = find_named(in_file, name);
+    const auto found = find_region(in_file, name);
     if (found.empty()) {
       const std::string nearest = nearest_name(name, in_file);
       return input_error(where, fmt::format("there is no region '{}'; the mesh has {}", name, fmt::join(in_file, ", ")),
                          nearest.empty() ? "Use one of these names" : fmt::format("Did you mean '{}'?", nearest));
     }
-    for (const std::size_t region : found) mesh.regions[region] = region_meant(canonical);
-  }
-  for (auto region = mesh.regions.begin(); region != mesh.regions.end(); ++region) {
-    if (std::find(mesh.regions.begin(), region, *region) != region) {
-      return input_error(where, fmt::format("two regions would be called '{}'", *region),
-                         "Give each region a different name");
+    for (const std::size_t region : found) {
+      mesh.regions[region] = region_meant(canonical);
+      asked.insert(in_file[region]);
     }
   }
-  return Ok{};
+  std::vector<std::string> kept;
+  std::vector<int> number;  // (regions of the file) in `kept`
+  for (const std::string& region : mesh.regions) {
+    const auto before = std::find(kept.begin(), kept.end(), region);
+    number.push_back(static_cast<int>(before - kept.begin()));
+    if (before == kept.end()) kept.push_back(region);
+  }
+  for (int& region : mesh.tet_region) region = number[static_cast<std::size_t>(region)];
+  std::vector<std::string> notes;
+  for (std::size_t r = 0; r < kept.size(); ++r) {
+    std::vector<std::string> parts;
+    for (std::size_t region = 0; region < in_file.size(); ++region) {
+      if (number[region] == static_cast<int>(r)) parts.push_back(fmt::format("'{}'", in_file[region]));
+    }
+    if (parts.size() < 2) continue;
+    for (std::size_t region = 0; region < in_file.size(); ++region) {
+      if (number[region] != static_cast<int>(r) || asked.contains(in_file[region])) continue;
+      return input_error(where, fmt::format("two regions would be called '{}': {}", kept[r], fmt::join(parts, ", ")),
+                         fmt::format("Give each region a different name; to make them one, name '{}', too, in "
+                                     "[patient.regions] or with --region",
+                                     in_file[region]));
+    }
+    notes.push_back(fmt::format("The regions {} of the file are one region, '{}'.", fmt::join(parts, ", "), kept[r]));
+  }
+  mesh.regions = std::move(kept);
+  return notes;
 }
 
 MeshReport report_as_is(const TetMesh& mesh) {
@@ -124,8 +151,10 @@ Result<MeshedAnatomy> model_of(const std::vector<Surface>& surfaces, const MeshO
 
 Result<MeshedAnatomy> take_mesh(TetMesh mesh, const std::map<std::string, std::string>& names,
                                 const std::string& where) {
-  if (Result<> named = rename_regions(mesh, names, where); !named) return named.error();
+  const auto notes = rename_regions(mesh, names, where);
+  if (!notes) return notes.error();
   MeshReport report = report_as_is(mesh);
+  report.notes = *notes;
   return MeshedAnatomy{.mesh = std::move(mesh), .report = std::move(report)};
 }
 
@@ -140,9 +169,12 @@ Result<MeshedAnatomy> mesh_patient(const Scenario& scenario, const Progress& pro
   options.layers = scenario.anatomy;
   if (scenario.patient.source == "phantom" && scenario.patient.volume > 0)
     return input_error("patient.volume", "the phantom is not a mask with volumes to choose from", "Leave it out");
+  if (scenario.patient.source == "phantom" && !scenario.patient.regions_from.empty())
+    return input_error("patient.regions_from", "the phantom is not a mesh file with arrays", "Leave it out");
   if (scenario.patient.source == "phantom") return model_of(demo_patient(), options, scenario, progress);
-  const Result<PatientFile> file = read_patient(scenario.patient.source, {.scale = scenario.patient.scale}, options,
-                                                {.volume = scenario.patient.volume});
+  const Result<PatientFile> file = read_patient(
+      scenario.patient.source, {.scale = scenario.patient.scale, .regions_from = scenario.patient.regions_from},
+      options, {.volume = scenario.patient.volume});
   if (!file) return file.error();
   auto patient =
       std::visit([&](const auto& content) { return model_of(content, options, scenario, progress); }, file->content);

@@ -43,6 +43,12 @@ void describe_patient(ScenarioEntries& keys) {
   keys.integer("patient.volume", 0, 1000000,
                "number of the volume in a mask file with several volumes, counted from 1; 0 = the only one",
                [](auto& s, const Slot&) { return &s.patient.volume; });
+  keys.text(
+      "patient.regions_from",
+      "array of a mesh file that is its regions: name of a cell array (VTU, VTK) or of $ElementData (gmsh), or "
+      "\"attribute N\" (TetGen); without it the format's own regions, or the only array of whole numbers that can be "
+      "them",
+      [](auto& s, const Slot&) { return &s.patient.regions_from; }, {.example = "\"tissue\""});
   keys.texts(
       "patient.skip", 0,
       "structures (names) or labels (names or numbers) to leave out, for example a structure that is drawn wrongly",

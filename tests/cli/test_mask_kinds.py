@@ -36,6 +36,10 @@ class MaskKinds(InFolder):
     def test_plates_of_one_slice_are_not_meshed(self):
         self.refuse("mesh", DATA / "k05_two_distant_frames.dcm", "-o", "m.vtu", says=["thicker than a voxel", "slices"])
 
+    def test_of_plates_of_one_slice_the_mesh_says_why_it_keeps_little(self):
+        notes = " ".join(self.json_of("mesh", DATA / "k05_every_second_slice.dcm", "-o", "m.vtu")["notes"])
+        self.assertIn("7 slices, of which 7 are plates of one slice", notes)
+
     def test_each_volume_of_an_old_slicer_is_a_segment(self):
         info = self.check("k06_slicer_4.10.seg.nrrd", self.GLAND_AND_URETHRA, ["share 70 voxels"])
         self.assertEqual([label["name"] for label in info["labels"]], ["Prostate", "Urethra"])

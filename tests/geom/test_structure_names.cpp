@@ -25,6 +25,15 @@ TEST(StructureNames, an_empty_word_means_no_structure) {
   }
 }
 
+TEST(StructureNames, a_number_is_a_region_without_a_name) {
+  const std::vector<std::string> names{"region 1", "region -2", "prostate"};
+  EXPECT_EQ(find_region(names, "1"), (Found{0}));
+  EXPECT_EQ(find_region(names, "-2"), (Found{1}));
+  EXPECT_EQ(find_region(names, "Prostate"), (Found{2}));
+  EXPECT_EQ(find_region(std::vector<std::string>{"region 1", "1"}, "1"), (Found{1}));
+  for (const char* word : {"2", "", "-", "on 1"}) EXPECT_TRUE(find_region(names, word).empty()) << word;
+}
+
 TEST(StructureNames, listed_names_differ_in_nothing_but_case) {
   const std::vector<std::string> words{"rectum", "X1"};
   EXPECT_TRUE(is_listed("Rectum", words));

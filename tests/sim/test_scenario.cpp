@@ -115,6 +115,7 @@ TEST(ScenarioKeys, a_value_that_is_set_is_the_value_that_is_read) {
       {"name", text("a \"quoted\" name")},
       {"patient.source", text("p.dcm")},
       {"patient.scale", number(1000)},
+      {"patient.regions_from", text("tissue")},
       {"patient.regions.GTV 1.5", text("prostate")},
       {"tissue.prostate.young_kPa", number(17.25)},
       {"tissue.a.b.puncture_N", number(0.5)},

@@ -17,6 +17,10 @@ std::string folded(std::string_view name);
 ///   in upper and lower case, in accents or in surrounding blanks; empty for an empty word or a word of blanks
 std::vector<std::size_t> find_named(std::span<const std::string> names, std::string_view word);
 
+/// Finds the regions of a mesh that a user's word refers to: find_named(); if there is none, a number N stands for
+/// "region N", as the regions of files without names are called.
+std::vector<std::size_t> find_region(std::span<const std::string> names, std::string_view word);
+
 /// Whether one of the words equals this name, apart from upper and lower case and surrounding blanks. A name of blanks
 /// is never listed.
 bool is_listed(std::string_view name, std::span<const std::string> words);

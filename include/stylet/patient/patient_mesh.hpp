@@ -15,7 +15,8 @@ Result<MeshedAnatomy> mesh_patient(const Scenario& scenario, const Progress& pro
 
 /// Takes a mesh that was made elsewhere: renames its regions and reports its quality. In the report the input volumes
 /// equal the mesh volumes.
-/// @param names name in the file → name in the model
+/// @param names name in the file, or N for "region N" → name in the model; regions to which this gives the same
+///   name become one
 /// @param where name of the file in error messages
 Result<MeshedAnatomy> take_mesh(TetMesh mesh, const std::map<std::string, std::string>& names,
                                 const std::string& where);

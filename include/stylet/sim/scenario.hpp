@@ -95,6 +95,7 @@ struct Scenario {
     std::vector<std::string> skip;               ///< structures or labels to leave out
     double scale = 0.0;                          ///< [mm] length of the unit of a mesh file; 0 = as the file says
     int volume = 0;                              ///< number of the volume in a mask file, from 1; 0 = the only one
+    std::string regions_from;                    ///< array of a mesh file that is its regions; empty = as the file says
     bool operator==(const Patient&) const = default;
   } patient;
   struct TissueModel {

@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "detail/dicom.hpp"
 
+#include "detail/dicom_text.hpp"
 #include "detail/parsers.hpp"
 #include "detail/text.hpp"
 
 #include <dcmtk/oflog/oflog.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <iconv.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
-#include <memory>
 
 namespace stylet::detail {
 
@@ -21,44 +20,29 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A Japanese text with escape sequences (ISO 2022 IR 6, 13, 87 and 159; PS3.3 C.12.1.1.2), which DCMTK does not
-/// convert everywhere, as UTF-8. Bytes above 127 are half-width katakana (JIS X 0201). Unchanged if it is anything
-/// else.
-std::string utf8_of_japanese(const std::string& text) {
-  const std::unique_ptr<void, int (*)(void*)> converter(iconv_open("UTF-8", "ISO-2022-JP-2"), [](void* open) {
-    return open == reinterpret_cast<void*>(-1) ? 0 : iconv_close(open);
-  });
-  if (converter.get() == reinterpret_cast<void*>(-1)) return text;
-  std::string out;
-  for (std::size_t at = 0; at < text.size();) {
-    const auto byte = static_cast<unsigned char>(text[at]);
-    if (byte >= 0x80) {
-      if (byte < 0xa1 || byte > 0xdf) return text;
-      const unsigned code = 0xff61U + (byte - 0xa1U);
-      out += {'\xef', static_cast<char>(0x80U | ((code >> 6U) & 0x3fU)), static_cast<char>(0x80U | (code & 0x3fU))};
-      ++at;
-      continue;
-    }
-    std::size_t end = at;  // what has 7 bits, in which escape sequences may switch between alphabets
-    while (end < text.size() && static_cast<unsigned char>(text[end]) < 0x80) ++end;
-    std::string in = text.substr(at, end - at), piece(4 * in.size() + 16, '\0');
-    char* from = in.data();
-    char* to = piece.data();
-    std::size_t left = in.size(), room = piece.size();
-    if (iconv(converter.get(), &from, &left, &to, &room) == static_cast<std::size_t>(-1)) return text;
-    out.append(piece, 0, piece.size() - room);
-    at = end;
+/// SpecificCharacterSet (0008,0005) of an item, or of the nearest one around it that states it.
+std::string character_sets(DcmObject& item) {
+  for (DcmObject* object = &item; object != nullptr; object = object->getParent()) {
+    auto* around = dynamic_cast<DcmItem*>(object);
+    OFString value;
+    if (around != nullptr && around->findAndGetOFStringArray(DCM_SpecificCharacterSet, value).good())
+      return {value.data(), value.size()};
   }
-  return out;
+  return {};
 }
 
 }  // namespace
 
-std::string text_of(DcmItem& item, const DcmTagKey& tag) {
+std::string bytes_of(DcmItem& item, const DcmTagKey& tag) {
   OFString value;
   if (item.findAndGetOFStringArray(tag, value).bad()) return {};
-  const std::string text = trimmed({value.data(), value.size()});
-  return text.find('\x1b') == std::string::npos ? text : trimmed(utf8_of_japanese(text));
+  return trimmed({value.data(), value.size()});
+}
+
+std::string text_of(DcmItem& item, const DcmTagKey& tag) {
+  const std::string bytes = bytes_of(item, tag);
+  if (std::all_of(bytes.begin(), bytes.end(), [](char c) { return c >= ' ' && c < '\x7F'; })) return bytes;
+  return trimmed(dicom_utf8(bytes, character_sets(item)));
 }
 
 std::optional<int> integer_of(DcmItem& item, const DcmTagKey& tag) {
@@ -124,7 +108,6 @@ Result<> load_dicom(DcmFileFormat& file, const fs::path& path, const std::functi
     return input_error(path.string(), fmt::format("the DICOM file cannot be read to its end ({})", status.text()),
                        "The file is truncated or damaged; copy or export it again");
   }
-  data.convertToUTF8();  // on failure the bytes stay unchanged
   return Ok{};
 }
 

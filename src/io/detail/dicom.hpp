@@ -24,7 +24,7 @@ struct DicomKind {
 /// the file is not DICOM.
 DicomKind kind_of_dicom(const std::filesystem::path& path);
 
-/// Reads a whole file into memory and converts its texts to UTF-8.
+/// Reads a whole file into memory.
 /// @param check_kind is called as soon as the file has a header: an error about the wrong kind of file helps more than
 ///   one about the place where the file ends
 /// @param name_another cure for a file that is not DICOM
@@ -32,8 +32,12 @@ DicomKind kind_of_dicom(const std::filesystem::path& path);
 Result<> load_dicom(DcmFileFormat& file, const std::filesystem::path& path,
                     const std::function<Result<>(DcmDataset&)>& check_kind, const std::string& name_another);
 
-/// All values of an attribute as one text, trimmed; empty if it is absent.
+/// All values of an attribute as one text, trimmed, in UTF-8 by the character set that the file states, and without
+/// control characters; empty if it is absent.
 std::string text_of(DcmItem& item, const DcmTagKey& tag);
+
+/// The same in the bytes of the file.
+std::string bytes_of(DcmItem& item, const DcmTagKey& tag);
 
 /// The value of an attribute as a whole number; empty if it is absent or not a whole number.
 std::optional<int> integer_of(DcmItem& item, const DcmTagKey& tag);

@@ -3,6 +3,7 @@
 
 #include "detail/child.hpp"
 #include "detail/wire.hpp"
+#include "stylet/core/printable.hpp"
 
 #include <filesystem>
 #include <functional>
@@ -44,7 +45,11 @@ Result<T> guarded(const std::filesystem::path& path, const std::function<Result<
         return threw(path, "unknown exception", cure);
       }
     }();
-    return to_bytes(result);
+    if (result) return to_bytes(result);
+    // Errors quote words of the file.
+    const Error& error = result.error();
+    Result<T> safe(Error{error.kind, printable(error.where), printable(error.what), printable(error.cure)});
+    return to_bytes(safe);
   };
   const ChildLimits limits = limits_for(path);
   const ChildOutcome outcome = run_in_child(work, limits);

@@ -5,7 +5,7 @@
 #include "detail/guard.hpp"
 #include "detail/parsers.hpp"
 #include "detail/patient_attributes.hpp"
-#include "detail/text.hpp"
+#include "stylet/core/printable.hpp"
 #include "stylet/dose/strength_age.hpp"
 #include "stylet/io/patient_record_io.hpp"
 
@@ -20,31 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 using detail::RecordText;
 
-/// Number of bytes of the UTF-8 character that begins at a place of a text; 0 if none does.
-std::size_t utf8_length(const std::string& text, std::size_t at) {
-  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
-  const unsigned char first = byte(at);
-  const std::size_t length = first < 0x80   ? 1
-                             : first < 0xc2 ? 0
-                             : first < 0xe0 ? 2
-                             : first < 0xf0 ? 3
-                             : first < 0xf5 ? 4
-                                            : 0;
-  if (at + length > text.size()) return 0;
-  for (std::size_t k = at + 1; k < at + length; ++k) {
-    if ((byte(k) & 0xc0U) != 0x80U) return 0;
-  }
-  return length;
-}
-
-bool is_utf8(const std::string& text) {
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t length = utf8_length(text, at);
-    if (length == 0) return false;
-    at += length;
-  }
-  return true;
-}
+/// Whether a text has characters that stand for bytes outside its character set.
+bool is_replaced(const std::string& text) { return text.find("\xEF\xBF\xBD") != std::string::npos; }
 
 std::string from_latin1(const std::string& text) {
   std::string out;
@@ -93,8 +70,9 @@ Result<FoundPatient> parse_patient_record(const fs::path& path) {
   record.file = path.string();
   for (const detail::PatientAttribute& attribute : detail::kPatientAttributes) {
     std::string text = detail::text_of(data, attribute.tag);
-    if (!is_utf8(text)) {
-      text = from_latin1(text);
+    const std::string bytes = detail::bytes_of(data, attribute.tag);
+    if (is_replaced(text) && !is_replaced(bytes)) {
+      text = printable(from_latin1(bytes));
       record.notes.push_back(
           fmt::format("{}: the {} is not in the file's character set ('{}'); it is read as Latin-1, '{}'. Check it.",
                       record.file, attribute.name, detail::text_of(data, DCM_SpecificCharacterSet), text));

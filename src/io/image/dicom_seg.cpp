@@ -383,7 +383,6 @@ Result<LabelImage> parse_dicom_seg(const std::filesystem::path& path, const Mask
     return input_error(source, "the segmentation is spread over several files (a concatenation)",
                        "Export it as one file");
   }
-  data.convertToUTF8();  // on failure the bytes stay unchanged
   const int rows = integer_of(data, DCM_Rows).value_or(0), columns = integer_of(data, DCM_Columns).value_or(0);
   const int count = integer_of(data, DCM_NumberOfFrames).value_or(0);
   if (rows < 2 || columns < 2 || count < 1) {

@@ -2,6 +2,7 @@
 #include "mesh/raw_mesh.hpp"
 
 #include "detail/reach.hpp"
+#include "stylet/core/printable.hpp"
 #include "stylet/geom/plausible_size.hpp"
 
 #include <fmt/format.h>
@@ -48,7 +49,7 @@ void set_regions(const RawMesh& raw, TetMesh& mesh) {
     number = static_cast<int>(mesh.regions.size());
     const auto name = raw.tag_names.find(tag);
     std::string text =
-        name != raw.tag_names.end() && !name->second.empty() ? name->second : fmt::format("region {}", tag);
+        name != raw.tag_names.end() && !name->second.empty() ? printable(name->second) : fmt::format("region {}", tag);
     // Two numbers may have the same name in the file, but regions need different names.
     if (mesh.region_index(text) >= 0) text += fmt::format(" {}", tag);
     mesh.regions.push_back(std::move(text));
@@ -97,6 +98,7 @@ Result<MeshWithNotes> finish_mesh(RawMesh raw, const std::string& source, const 
                        "Export a volume mesh of tetrahedra; fill a surface with tetrahedra first");
   }
   if (raw.quadratic) out.notes.emplace_back("Of the quadratic tetrahedra only the corner nodes are used.");
+  if (Result<> chosen = choose_regions(raw, options.regions_from, source, out.notes); !chosen) return chosen.error();
   if (const Index dropped = drop_foreign_nodes(raw); dropped > 0) {
     out.notes.push_back(fmt::format("Dropped {} node{} that no tetrahedron uses.", dropped, dropped == 1 ? "" : "s"));
   }

@@ -59,6 +59,11 @@ GmshLibrary::GmshLibrary(void* loaded) {
   find(nodes_, "gmshModelMeshGetNodes");
   find(elements_, "gmshModelMeshGetElements");
   find(properties_, "gmshModelMeshGetElementProperties");
+  find(get_string_, "gmshOptionGetString");
+  find(get_number_, "gmshOptionGetNumber");
+  find(views_, "gmshViewGetTags");
+  find(view_index_, "gmshViewGetIndex");
+  find(view_data_, "gmshViewGetHomogeneousModelData");
 }
 
 template <class T>
@@ -184,6 +189,36 @@ GmshLibrary::ElementType GmshLibrary::element_type(int type) const {
   check(error);
   free_(local);
   return {taken(name), nodes};
+}
+
+std::vector<GmshLibrary::ElementData> GmshLibrary::element_data() const {
+  int* numbers = nullptr;
+  std::size_t count = 0;
+  int error = 0;
+  views_(&numbers, &count, &error);
+  check(error);
+  std::vector<ElementData> all;
+  for (const int view : taken(numbers, count)) {
+    const int index = view_index_(view, &error);
+    check(error);
+    double step = 0.0;
+    get_number_(fmt::format("View[{}].TimeStep", index).c_str(), &step, &error);
+    char *kind = nullptr, *name = nullptr;
+    std::size_t *tags = nullptr, tag_count = 0, value_count = 0;
+    double *values = nullptr, time = 0.0;
+    int components = 0;
+    view_data_(view, static_cast<int>(step), &kind, &tags, &tag_count, &values, &value_count, &time, &components,
+               &error);
+    if (error != 0) continue;  // data of points outside the mesh
+    ElementData data{.name = {}, .tags = taken(tags, tag_count), .values = taken(values, value_count)};
+    if (taken(kind) != "ElementData") continue;
+    get_string_(fmt::format("View[{}].Name", index).c_str(), &name, &error);
+    check(error);
+    data.name = taken(name);
+    if (components != 1 || data.values.size() != data.tags.size()) data.values.clear();
+    all.push_back(std::move(data));
+  }
+  return all;
 }
 
 }  // namespace stylet::detail

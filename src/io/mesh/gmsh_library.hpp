@@ -30,6 +30,13 @@ class GmshLibrary {
     int nodes = 0;
   };
 
+  /// Numbers of elements that a file has beside its mesh ($ElementData).
+  struct ElementData {
+    std::string name;
+    std::vector<std::size_t> tags;  ///< of the elements
+    std::vector<double> values;     ///< one for each element; empty if they have several
+  };
+
   /// The library, loaded by the first call. Failure: it is missing, or it is another version.
   static Result<const GmshLibrary*> get();
 
@@ -47,6 +54,8 @@ class GmshLibrary {
   [[nodiscard]] Nodes nodes() const;
   [[nodiscard]] std::vector<Elements> elements(int dimension, int entity) const;
   [[nodiscard]] ElementType element_type(int type) const;
+  /// All $ElementData of the file, each at its first step.
+  [[nodiscard]] std::vector<ElementData> element_data() const;
 
  private:
   explicit GmshLibrary(void* loaded);
@@ -70,6 +79,11 @@ class GmshLibrary {
   decltype(&gmshModelMeshGetNodes) nodes_ = nullptr;
   decltype(&gmshModelMeshGetElements) elements_ = nullptr;
   decltype(&gmshModelMeshGetElementProperties) properties_ = nullptr;
+  decltype(&gmshOptionGetString) get_string_ = nullptr;
+  decltype(&gmshOptionGetNumber) get_number_ = nullptr;
+  decltype(&gmshViewGetTags) views_ = nullptr;
+  decltype(&gmshViewGetIndex) view_index_ = nullptr;
+  decltype(&gmshViewGetHomogeneousModelData) view_data_ = nullptr;
 };
 
 }  // namespace stylet::detail

@@ -27,11 +27,13 @@ class Regions {
     const std::string name = groups.size() == 1 ? gmsh.physical_name(3, groups.front().second) : "";
     by_volume_ = groups.empty() || (groups.size() == 1 && name.empty() && volumes.size() > 1);
   }
+  [[nodiscard]] bool by_volume() const { return by_volume_; }
+  /// Number and name of the region of a volume; the name is empty if it says no more than the number.
   [[nodiscard]] std::pair<int, std::string> of(int volume) const {
-    std::vector<int> groups;
-    if (!by_volume_) groups = gmsh_.physical_groups_of(3, volume);
+    if (by_volume_) return {volume, ""};
+    const std::vector<int> groups = gmsh_.physical_groups_of(3, volume);
     // The minus sign distinguishes the number of a volume outside all groups from the numbers of groups.
-    if (groups.empty()) return {by_volume_ ? volume : -volume, fmt::format("region {}", volume)};
+    if (groups.empty()) return {-volume, fmt::format("region {}", volume)};
     return {groups.front(), gmsh_.physical_name(3, groups.front())};
   }
 
@@ -50,7 +52,22 @@ std::vector<std::size_t> element_numbers(const GmshLibrary& gmsh) {
   return numbers;
 }
 
-Result<RawMesh> to_raw(const GmshLibrary& gmsh, const std::string& source) {
+/// The $ElementData of the file, with their values at the tetrahedra.
+/// @param tets numbers of the tetrahedra
+void add_element_data(const GmshLibrary& gmsh, const std::vector<std::int64_t>& tets, RawMesh& raw) {
+  for (const GmshLibrary::ElementData& data : gmsh.element_data()) {
+    std::unordered_map<std::size_t, double> value;
+    for (std::size_t i = 0; i < data.values.size(); ++i) value.emplace(data.tags[i], data.values[i]);
+    CellArray& added = raw.arrays.emplace_back(CellArray{.name = data.name, .values = {}, .names = {}});
+    for (const std::int64_t tet : tets) {
+      if (const auto found = value.find(static_cast<std::size_t>(tet)); found != value.end())
+        added.values.push_back(found->second);
+    }
+    if (added.values.size() != tets.size()) added.values.clear();
+  }
+}
+
+Result<RawMesh> to_raw(const GmshLibrary& gmsh, const std::string& source, bool medit) {
   RawMesh raw;
   const auto [tags, coordinates] = gmsh.nodes();
   std::unordered_map<std::size_t, Index> node;
@@ -65,6 +82,11 @@ Result<RawMesh> to_raw(const GmshLibrary& gmsh, const std::string& source) {
   raw.used_elsewhere.assign(raw.nodes.size(), false);
 
   const Regions regions(gmsh);
+  CellArray own{.name = medit                 ? "references"
+                        : regions.by_volume() ? "volumes"
+                                              : "physical groups",
+                .values = {},
+                .names = {}};
   for (const auto& [dimension, entity] : gmsh.entities(-1)) {
     const auto [tag, name] = dimension == 3 ? regions.of(entity) : std::pair<int, std::string>{};
     for (const auto& [type, elements, nodes] : gmsh.elements(dimension, entity)) {
@@ -77,7 +99,7 @@ Result<RawMesh> to_raw(const GmshLibrary& gmsh, const std::string& source) {
         raw.passed_over[fmt::format("element(s) of type {}", kind)] += static_cast<Index>(count);
       } else {
         raw.quadratic = raw.quadratic || type == tetrahedron_10;
-        raw.tag_names[tag] = name;
+        if (!name.empty()) own.names[tag] = name;
       }
       for (std::size_t e = 0; e < count; ++e) {
         std::array<Index, 4> tet{};
@@ -96,11 +118,16 @@ Result<RawMesh> to_raw(const GmshLibrary& gmsh, const std::string& source) {
         }
         if (tets) {
           raw.tets.push_back(tet);
-          raw.tag.push_back(tag);
+          raw.cells.push_back(static_cast<std::int64_t>(elements[e]));
+          own.values.push_back(tag);
         }
       }
     }
   }
+  raw.array_word = medit ? "array" : "$ElementData";
+  raw.own = 0;
+  raw.arrays.push_back(std::move(own));
+  add_element_data(gmsh, raw.cells, raw);
   return raw;
 }
 
@@ -161,7 +188,7 @@ Result<RawMesh> parse_gmsh_mesh(const fs::path& path, bool medit) {
         if (Result<> numbered = check_element_numbers(path, element_numbers(gmsh), nodes_of); !numbered)
           return numbered.error();
       }
-      Result<RawMesh> raw = to_raw(gmsh, source);
+      Result<RawMesh> raw = to_raw(gmsh, source, medit);
       const std::size_t announced = medit ? announced_tetrahedra(path) : 0;
       if (raw && medit && raw->tets.size() != announced) {
         return input_error(source,

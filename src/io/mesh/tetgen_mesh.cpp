@@ -23,6 +23,8 @@ class NumberLines {
   [[nodiscard]] bool opened() const { return file_.is_open(); }
   [[nodiscard]] std::string place() const { return fmt::format("{}, line {}", name_, line_number_); }
 
+  [[nodiscard]] int number() const { return line_number_; }
+
   /// The next line's numbers; an error at the end of the file.
   Result<std::vector<double>> next() {
     std::string line;
@@ -102,15 +104,22 @@ Result<> read_tets(NumberLines& lines, const Nodes& nodes, RawMesh& raw) {
         lines, "the first line of an .ele file is: number of tetrahedra, nodes per tetrahedron (4 or 10), attributes");
   }
   const std::size_t per_tet = (*head)[1] == 10.0 ? 10 : 4;
-  const bool with_region = head->size() > 2 && (*head)[2] > 0.0;
+  const auto attributes = head->size() > 2 ? whole((*head)[2]).value_or(0) : 0;
+  constexpr Index most_attributes = 1000;
+  if (attributes > most_attributes)
+    return wrong_line(lines,
+                      fmt::format("{} attributes are announced, at most {} are read", attributes, most_attributes));
+  for (Index a = 1; a <= attributes; ++a)
+    raw.arrays.push_back({.name = fmt::format("attribute {}", a), .values = {}, .names = {}});
+  if (attributes > 0) raw.own = 0;
+  raw.array_word = "attribute";
   raw.quadratic = per_tet == 10;
   for (Index t = 0; t < *count; ++t) {
     Result<std::vector<double>> line = lines.next();
     if (!line) return line.error();
-    if (line->size() < 1 + per_tet + (with_region ? 1 : 0)) {
-      return wrong_line(lines,
-                        fmt::format("{} numbers, {} are expected", line->size(), 1 + per_tet + (with_region ? 1 : 0)));
-    }
+    const std::size_t expected = 1 + per_tet + raw.arrays.size();
+    if (line->size() < expected)
+      return wrong_line(lines, fmt::format("{} numbers, {} are expected", line->size(), expected));
     std::array<Index, 4> tet{};
     for (std::size_t i = 0; i < per_tet; ++i) {
       const auto number = whole((*line)[1 + i]);
@@ -125,16 +134,9 @@ Result<> read_tets(NumberLines& lines, const Nodes& nodes, RawMesh& raw) {
         raw.used_elsewhere[node] = true;
       }
     }
-    int tag = 0;
-    if (with_region) {
-      const double value = (*line)[1 + per_tet];
-      if (!(std::abs(value) < 1e9) || value != std::floor(value)) {
-        return wrong_line(lines, fmt::format("the region attribute {} is not a whole number", value));
-      }
-      tag = static_cast<int>(value);
-    }
+    for (std::size_t a = 0; a < raw.arrays.size(); ++a) raw.arrays[a].values.push_back((*line)[1 + per_tet + a]);
     raw.tets.push_back(tet);
-    raw.tag.push_back(tag);
+    raw.cells.push_back(lines.number());
   }
   return Ok{};
 }
@@ -159,6 +161,7 @@ Result<RawMesh> parse_tetgen_mesh(const fs::path& path) {
   raw.used_elsewhere.assign(nodes->points.size(), false);
   if (Result<> tets = read_tets(ele_lines, *nodes, raw); !tets) return tets.error();
   raw.nodes = std::move(nodes->points);
+  raw.cell_word = path == ele_path ? "line" : "line of the .ele file";
   return raw;
 }
 

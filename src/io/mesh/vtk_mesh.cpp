@@ -15,7 +15,8 @@
 #include <vtkUnstructuredGridReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
-#include <cmath>
+#include <algorithm>
+#include <array>
 
 namespace stylet::detail {
 
@@ -25,30 +26,26 @@ namespace {
 constexpr std::array<const char*, 7> region_arrays{"region",    "Region",     "CellEntityIds", "gmsh:physical",
                                                    "medit:ref", "MaterialID", "label"};
 
-Result<> read_regions(vtkUnstructuredGrid& grid, const std::vector<vtkIdType>& tet_cells, const std::string& source,
-                      RawMesh& raw) {
-  raw.tag.assign(tet_cells.size(), 0);
-  vtkDataArray* array = nullptr;
+/// The arrays of numbers of the cells, with their values at the tetrahedra.
+void read_arrays(vtkUnstructuredGrid& grid, const std::vector<vtkIdType>& tet_cells, RawMesh& raw) {
+  vtkCellData& data = *grid.GetCellData();
+  for (int i = 0; i < data.GetNumberOfArrays(); ++i) {
+    vtkDataArray* array = data.GetArray(i);  // null: not of numbers
+    if (array == nullptr || array->GetName() == nullptr) continue;
+    CellArray& added = raw.arrays.emplace_back(CellArray{.name = array->GetName(), .values = {}, .names = {}});
+    if (array->GetNumberOfComponents() != 1 || array->GetNumberOfTuples() != grid.GetNumberOfCells()) continue;
+    added.values.reserve(tet_cells.size());
+    for (const vtkIdType cell : tet_cells) added.values.push_back(array->GetComponent(cell, 0));
+  }
   for (const char* name : region_arrays) {
-    if (array == nullptr) array = grid.GetCellData()->GetArray(name);
+    const auto own = std::find_if(raw.arrays.begin(), raw.arrays.end(), [&](const auto& a) { return a.name == name; });
+    if (raw.own || own == raw.arrays.end()) continue;
+    raw.own = static_cast<std::size_t>(own - raw.arrays.begin());
+    auto* names = vtkStringArray::SafeDownCast(grid.GetFieldData()->GetAbstractArray("region_names"));
+    for (vtkIdType n = 0; names != nullptr && n < names->GetNumberOfValues(); ++n)
+      own->names[static_cast<int>(n)] = names->GetValue(n);
   }
-  if (array == nullptr) return Ok{};
-  if (array->GetNumberOfComponents() != 1 || array->GetNumberOfTuples() != grid.GetNumberOfCells()) {
-    return input_error(source, fmt::format("the cell array '{}' does not have one number per cell", array->GetName()),
-                       "Write one region number per cell");
-  }
-  for (std::size_t t = 0; t < tet_cells.size(); ++t) {
-    const double value = array->GetComponent(tet_cells[t], 0);
-    if (!(std::abs(value) < 1e9) || value != std::floor(value)) {
-      return input_error(fmt::format("{}, cell {}", source, tet_cells[t]),
-                         fmt::format("the region number {} is not a whole number", value), "Write whole numbers");
-    }
-    raw.tag[t] = static_cast<int>(value);
-  }
-  if (auto* names = vtkStringArray::SafeDownCast(grid.GetFieldData()->GetAbstractArray("region_names"))) {
-    for (vtkIdType i = 0; i < names->GetNumberOfValues(); ++i) raw.tag_names[static_cast<int>(i)] = names->GetValue(i);
-  }
-  return Ok{};
+  raw.cells.assign(tet_cells.begin(), tet_cells.end());
 }
 
 Result<RawMesh> to_raw(vtkUnstructuredGrid& grid, const std::string& source) {
@@ -88,7 +85,7 @@ Result<RawMesh> to_raw(vtkUnstructuredGrid& grid, const std::string& source) {
     const char* kind = vtkCellTypes::GetClassNameFromTypeId(type);
     ++raw.passed_over[fmt::format("cell(s) of type {}", kind == nullptr ? "unknown" : kind)];
   }
-  if (Result<> regions = read_regions(grid, tet_cells, source, raw); !regions) return regions.error();
+  read_arrays(grid, tet_cells, raw);
   return raw;
 }
 

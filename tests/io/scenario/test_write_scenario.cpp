@@ -91,6 +91,7 @@ TEST(ToToml, reads_back_whatever_is_set) {
   s.name = "quotes \" backslash \\ tab \t line\nend ü 前 '''";
   s.patient.source = "/data/a \"strange\" name.dcm";
   s.patient.scale = 0.1;
+  s.patient.regions_from = "gmsh:physical";
   s.patient.regions = {
       {"1", "peripheral_zone"}, {"GTV 1.5", "prostate"}, {"", "band"}, {"ümlaut", "body"}, {"a\"b", "x"}};
   s.patient.regions.erase("");
