@@ -23,7 +23,7 @@ constexpr const char* kSectionPictures =
 
 Result<std::string> page_about_dose(std::string_view body, Slots slots) {
   constexpr const char* kName = "report.html";
-  slots["dvh_plot"] = kDvhPlot + ("<noscript>" + slots["dvh_picture"] + "</noscript>");
+  slots["dvh_plot"] = kDvhPlot + ("<div class=\"for-paper\">" + slots["dvh_picture"] + "</div>");
   slots["section_pictures"] = kSectionPictures;
   Result<std::string> filled = fill_page(body, slots, kName);
   if (!filled) return filled;

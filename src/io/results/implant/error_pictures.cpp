@@ -65,8 +65,7 @@ struct ErrorScales {
 };
 
 std::string error_tick(double value) {
-  const std::string text = fmt::format("{:g}", std::abs(value));
-  return value < 0.0 ? "−" + text : text;
+  return with_minus_signs(fmt::format("{:g}", value == 0.0 ? 0.0 : value));
 }
 
 std::string error_frame(const ErrorScales& scales, std::size_t axis) {

@@ -53,6 +53,19 @@ std::string html_prose(std::string_view text) {
   return html;
 }
 
+std::string with_minus_signs(std::string_view text) {
+  const auto is = [&](std::size_t at, auto kind) {
+    return at < text.size() && kind(static_cast<unsigned char>(text[at])) != 0;
+  };
+  std::string with;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const bool number = is(k + 1, [](int c) { return std::isdigit(c); });
+    const bool within = k > 0 && is(k - 1, [](int c) { return std::isalnum(c) + (c == '-') + (c == '_') + (c >= 0x80); });
+    with += text[k] == '-' && number && !within ? "−" : std::string(1, text[k]);
+  }
+  return with;
+}
+
 std::string script_safe(std::string_view javascript) {
   const auto starts_with = [&](std::size_t at, std::string_view word) {
     if (javascript.size() - at < word.size()) return false;

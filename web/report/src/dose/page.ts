@@ -2,6 +2,7 @@
 // The parts of a page that show a dose: histograms, sections and the 3D view.
 import { build } from '../page_part';
 import type { DoseData } from './data';
+import { buildDifferenceKey } from './difference';
 import { buildDvhChart } from './dvh_chart';
 import { buildLevelKey } from './level_look';
 import { PLANES } from './planes';
@@ -18,10 +19,27 @@ export interface More {
   inSpace?: (stage: DoseStage, picture: HTMLElement) => HTMLElement[];
 }
 
+/** Opens what is folded while the page is printed. */
+function unfoldForPrint(): void {
+  let opened: HTMLDetailsElement[] = [];
+  addEventListener('beforeprint', () => {
+    opened = [...document.querySelectorAll<HTMLDetailsElement>('details:not([open])')];
+    for (const fold of opened) fold.open = true;
+  });
+  addEventListener('afterprint', () => {
+    for (const fold of opened) fold.open = false;
+  });
+}
+
 export function buildDosePage(data: DoseData, more: More = {}): void {
   document.documentElement.classList.add('with-script');
+  unfoldForPrint();
   build('dvh-plot', (box) => buildDvhChart(data, box, document.getElementById('dvh-legend') as HTMLElement, more.planned, more.found));
   build('iso-key', (box) => buildLevelKey(data, box, more.keys));
   build('section-pictures', (box) => box.append(...PLANES.map((plane) => buildSection(data, plane, more.marks))));
+  if (data.difference && document.getElementById('difference-pictures')) {
+    build('difference-key', (box) => buildDifferenceKey(data, box));
+    build('difference-pictures', (box) => box.append(...PLANES.map((plane) => buildSection(data, plane, undefined, true))));
+  }
   build('viewer', (box) => buildDoseViewer(data, box, more.inSpace));
 }
