@@ -181,9 +181,10 @@ void print(const DoseEvaluation& e, Console& console) {
                             e.comparison->file, e.comparison->median_ratio, e.comparison->p1, e.comparison->p99,
                             e.comparison->points));
     if (const auto& gamma = e.comparison->gamma) {
-      console.say(fmt::format("Gamma {:g} %/{:g} mm: {:.1f} % of {} points pass locally, {:.1f} % globally (of {:g} Gy)",
-                              gamma->criteria.dose_percent, gamma->criteria.distance_mm, gamma->local_percent,
-                              gamma->points, gamma->global_percent, gamma->global_Gy));
+      console.say(
+          fmt::format("Gamma {:g} %/{:g} mm: {:.1f} % of {} points pass locally, {:.1f} % globally (of {:g} Gy)",
+                      gamma->criteria.dose_percent, gamma->criteria.distance_mm, gamma->local_percent, gamma->points,
+                      gamma->global_percent, gamma->global_Gy));
     }
   }
 }
@@ -197,7 +198,7 @@ std::vector<DoseInput> inputs_of(const DoseArguments& arguments) {
   };
   add("plan", arguments.plan);
   add("structures", arguments.structures);
-  add("source model", arguments.source);
+  for (const std::string& source : arguments.sources) add("source model", source.substr(source.find('=') + 1));
   add("compared dose", arguments.compare);
   add("points", arguments.points);
   add("goals", arguments.goals);

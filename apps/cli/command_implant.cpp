@@ -102,10 +102,9 @@ std::string target_text(const ImplantOutcome& outcome) {
       continue;
     const auto figure = [](double Gy) { return std::isfinite(Gy) ? fmt::format("{:.2f}", Gy) : std::string("-"); };
     const auto row = [&](const std::string& name, const auto& of) {
-      table.row(
-          {structure.name, name, figure(of(outcome.planned.structures[k].dvh)),
-           outcome.at_planning ? figure(of(outcome.at_planning->delivered.structures[k].dvh)) : "-",
-           figure(of(structure.dvh))});
+      table.row({structure.name, name, figure(of(outcome.planned.structures[k].dvh)),
+                 outcome.at_planning ? figure(of(outcome.at_planning->delivered.structures[k].dvh)) : "-",
+                 figure(of(structure.dvh))});
     };
     if (target) row("D90 [Gy]", [](const DoseVolume& dvh) { return dvh.dose_of_percent(90.0); });
     if (const double prescription = outcome.delivered.prescription_Gy; target && prescription > 0.0)
@@ -213,11 +212,11 @@ Result<> run_implant(const ImplantArguments& arguments, Console& console) {
   if (Result<> kept = check_found_is_no_result(arguments.found, folder); !kept) return kept;
   warn_before_start(arguments.scenario, arguments.settings, console);
   Result<ImplantOutcome> outcome = implant(*scenario, arguments.scenario,
-                                                 {.compensate = arguments.compensate,
-                                                  .span = arguments.span,
-                                                  .found = arguments.found,
-                                                  .patient_from = arguments.patient_from},
-                                                 console.progress());
+                                           {.compensate = arguments.compensate,
+                                            .span = arguments.span,
+                                            .found = arguments.found,
+                                            .patient_from = arguments.patient_from},
+                                           console.progress());
   if (!outcome) return outcome.error();
   add_record(*outcome, arguments, *scenario);
   for (const std::string& warning : outcome->warnings) console.warn(warning);

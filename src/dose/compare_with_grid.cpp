@@ -138,8 +138,7 @@ Result<> compare_with_grid(DoseEvaluation& e, const DoseGrid& grid, std::span<co
       e.prescription_Gy > 0.0 ? e.prescription_Gy : *std::max_element(theirs.begin(), theirs.end());
   const Result<GammaRates> gamma = gamma_rates(points, theirs, ours, dose_at, global_Gy);
   if (!gamma) return gamma.error();
-  e.comparison =
-      DoseComparison{grid.file, ratio.size(), at(0.5), at(0.01), at(0.99), *gamma, std::move(difference)};
+  e.comparison = DoseComparison{grid.file, ratio.size(), at(0.5), at(0.01), at(0.99), *gamma, std::move(difference)};
   if (std::abs(at(0.5) - 1.0) > 0.02) {
     e.warnings.push_back(fmt::format(
         "The computed dose is {:.3f} times that of {} (median). Formalism, source model or strength may differ.",

@@ -17,8 +17,8 @@ std::vector<std::string> figures_left_out(const std::vector<StructureDose>& stru
       names += fmt::format("{}D{:g}cc", names.empty() ? "" : ", ", cc);
     }
     if (names.empty()) continue;
-    sentences.push_back(fmt::format("'{}' has {:.2f} cc only, so it has no {}.", structure.name,
-                                    structure.dvh.volume_cc(), names));
+    sentences.push_back(
+        fmt::format("'{}' has {:.2f} cc only, so it has no {}.", structure.name, structure.dvh.volume_cc(), names));
   }
   return sentences;
 }

@@ -47,9 +47,7 @@ void try_step(OpenPoint& point, int step, std::span<const double> reached_Gy) {
   const double from = (step - 1.0) / kStepsOfRay, to = 1.0 * step / kStepsOfRay;
   for (std::size_t ray = 0; ray < reached_Gy.size(); ++ray) {
     const double before = point.last_Gy[ray] - point.reference_Gy, now = reached_Gy[ray] - point.reference_Gy;
-    const auto passes = [&](double allowed) {
-      return least_square(from, to, before / allowed, now / allowed) <= 1.0;
-    };
+    const auto passes = [&](double allowed) { return least_square(from, to, before / allowed, now / allowed) <= 1.0; };
     point.local = point.local || passes(point.local_Gy);
     point.global = point.global || passes(point.global_Gy);
     point.last_Gy[ray] = reached_Gy[ray];
@@ -59,8 +57,8 @@ void try_step(OpenPoint& point, int step, std::span<const double> reached_Gy) {
 }  // namespace
 
 Result<GammaRates> gamma_rates(std::span<const Vec3> points, std::span<const double> reference_Gy,
-                       std::span<const double> evaluated_Gy, const DoseAtPoints& evaluated, double global_Gy,
-                       const GammaCriteria& criteria) {
+                               std::span<const double> evaluated_Gy, const DoseAtPoints& evaluated, double global_Gy,
+                               const GammaCriteria& criteria) {
   GammaRates rates{.criteria = criteria, .global_Gy = global_Gy};
   std::vector<std::size_t> judged;
   for (std::size_t p = 0; p < points.size(); ++p) {

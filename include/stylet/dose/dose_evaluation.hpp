@@ -55,20 +55,20 @@ struct JudgedGoal {
 /// How a dose grid from a file compares with the computed dose.
 struct DoseComparison {
   std::string file;
-  std::size_t points = 0;     ///< number of grid points compared
-  double median_ratio = 0.0;  ///< median of computed dose / dose of the file
-  double p1 = 0.0;            ///< 1st percentile of this ratio
-  double p99 = 0.0;           ///< 99th percentile
+  std::size_t points = 0;           ///< number of grid points compared
+  double median_ratio = 0.0;        ///< median of computed dose / dose of the file
+  double p1 = 0.0;                  ///< 1st percentile of this ratio
+  double p99 = 0.0;                 ///< 99th percentile
   std::optional<GammaRates> gamma;  ///< of the same points
-  /// Computed dose − dose of the file [Gy] on the points of the file's grid, moved as asked; NaN where the file has less
-  /// than the least dose that is compared, or a number that cannot be stored. Points near sources are included.
+  /// Computed dose − dose of the file [Gy] on the points of the file's grid, moved as asked; NaN where the file has
+  /// less than the least dose that is compared, or a number that cannot be stored. Points near sources are included.
   DoseGrid difference;
 };
 
 /// A file from which a dose was computed.
 struct DoseInput {
-  std::string role;  ///< what it is: "plan", "structures", …
-  std::string path;  ///< file or folder
+  std::string role;    ///< what it is: "plan", "structures", …
+  std::string path;    ///< file or folder
   std::string sha256;  ///< in hexadecimal; empty: unknown
 };
 

@@ -18,7 +18,8 @@ std::string gray(double dose_Gy) {
 std::string percent(double value) { return fixed(value, 1) + "&nbsp;%"; }
 
 std::string small_share(double dose_Gy, double of_Gy) {
-  return of_Gy > 0.0 && std::isfinite(dose_Gy) ? "<small>" + fixed(100.0 * dose_Gy / of_Gy, 0) + "&nbsp;%</small>" : std::string();
+  return of_Gy > 0.0 && std::isfinite(dose_Gy) ? "<small>" + fixed(100.0 * dose_Gy / of_Gy, 0) + "&nbsp;%</small>"
+                                               : std::string();
 }
 
 std::string plan_line(const DoseEvaluation& evaluation) {

@@ -122,8 +122,10 @@ std::string reasons_of_dashes(const DoseEvaluation& evaluation) {
 std::string gamma_text(const GammaRates& gamma, double prescription_Gy) {
   const GammaCriteria& by = gamma.criteria;
   return fmt::format(
-      "<h4>Gamma index, {:g} % and {:g} mm</h4><p>{} % of the points pass with {:g} % of the dose at the point (local), "
-      "{} % with {:g} % of {:g} Gy, {} (global): {} of the points above, those with at least {:g} % of {:g} Gy. The file "
+      "<h4>Gamma index, {:g} % and {:g} mm</h4><p>{} % of the points pass with {:g} % of the dose at the point "
+      "(local), "
+      "{} % with {:g} % of {:g} Gy, {} (global): {} of the points above, those with at least {:g} % of {:g} Gy. The "
+      "file "
       "is the reference (Low et al., Med Phys 25:656, 1998). The computed dose is taken from the formula at steps of "
       "{:g} mm along 100 directions, linearly in between.</p>",
       by.dose_percent, by.distance_mm, fixed(gamma.local_percent, 1), by.dose_percent, fixed(gamma.global_percent, 1),
@@ -197,9 +199,9 @@ std::string seed_table(const DoseEvaluation& evaluation) {
   for (const PlannedSource& source : evaluation.plan.sources) {
     rows += "<tr>" + figure_cell(fmt::format("{}", ++number)) + text_cell(source.needle);
     for (int k = 0; k < 3; ++k) rows += figure_cell(fixed(source.at_mm[k], 2));
-    rows += text_cell(with_minus_signs(fmt::format("({}, {}, {}){}", fixed(source.axis.x(), 3),
-                                                   fixed(source.axis.y(), 3), fixed(source.axis.z(), 3),
-                                                   source.has_axis ? "" : ", assumed")));
+    rows +=
+        text_cell(with_minus_signs(fmt::format("({}, {}, {}){}", fixed(source.axis.x(), 3), fixed(source.axis.y(), 3),
+                                               fixed(source.axis.z(), 3), source.has_axis ? "" : ", assumed")));
     rows += figure_cell(fixed(source.strength_U, 4));
     if (temporary) rows += figure_cell(fixed(source.dwell_s, 2));
     rows += "</tr>";

@@ -6,7 +6,9 @@
 namespace stylet::results {
 
 std::string text_cell(const std::string& text) { return "<td>" + html_escaped(text) + "</td>"; }
-std::string figure_cell(const std::string& text) { return "<td class=\"number\">" + html_escaped(with_minus_signs(text)) + "</td>"; }
+std::string figure_cell(const std::string& text) {
+  return "<td class=\"number\">" + html_escaped(with_minus_signs(text)) + "</td>";
+}
 std::string text_heading(const std::string& text) { return "<th>" + html_escaped(text) + "</th>"; }
 std::string figure_heading(const std::string& text) { return "<th class=\"number\">" + html_escaped(text) + "</th>"; }
 

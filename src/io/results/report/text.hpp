@@ -11,7 +11,7 @@ namespace stylet::results {
 /// Escapes a text for an element or a quoted attribute: & < > " ' become entities.
 std::string html_escaped(std::string_view text);
 
-/// Escapes a text and keeps numbers and their units on one line ("0.42 N").
+/// Escapes a text, keeps numbers and their units on one line ("0.42 N"), and puts minus signs (with_minus_signs()).
 std::string html_prose(std::string_view text);
 
 /// Puts the minus sign (U+2212) in the place of each hyphen that stands before a number and after no letter, digit or
