@@ -44,15 +44,17 @@ const overlap = (a, b) => {
   return wide > 1.5 && high > 0.4 * Math.min(a.y1 - a.y0, b.y1 - b.y0);
 };
 
-// a text with a rim is drawn twice at the same place
-const isRimOf = (a, b) => a.text === b.text && Math.hypot(a.x0 - b.x0, a.y0 - b.y0) < 0.5;
+// a text with a rim is drawn twice at the same place, with boxes of different height
+const near = (a, b) => Math.abs(a - b) < 0.5;
+const isRimOf = (a, b) => a.text === b.text && near(a.x0, b.x0) && near(a.x1, b.x1) && near(a.y0 + a.y1, b.y0 + b.y1);
 
 /** The faults of the pages' text, in words. */
 function faultsOf(pages) {
   return pages.flatMap(({ width, height, words }, page) => [
     ...words.filter((w) => w.x0 < EDGE_PT || w.y0 < EDGE_PT || w.x1 > width - EDGE_PT || w.y1 > height - EDGE_PT)
       .map((w) => `page ${page + 1}: "${w.text}" leaves the page`),
-    ...words.flatMap((a, k) => words.slice(k + 1).filter((b) => overlap(a, b) && !isRimOf(a, b)).map((b) => `page ${page + 1}: "${a.text}" covers "${b.text}"`)),
+    ...words.flatMap((a, k) => words.slice(k + 1).filter((b) => overlap(a, b) && !isRimOf(a, b))
+      .map((b) => `page ${page + 1}: "${a.text}" covers "${b.text}"`)),
   ]);
 }
 
@@ -62,14 +64,16 @@ async function print(report, name, width = 1366) {
   await page.pdf({ path: pdf, preferCSSPageSize: true, printBackground: true });
   await page.close();
   assert.deepEqual(problems, []);
-  if (process.env.STYLET_SCREENSHOTS) copyFileSync(pdf, path.join(process.env.STYLET_SCREENSHOTS, `${name}.pdf`));
+  if (process.env.STYLET_SCREENSHOTS)
+    copyFileSync(pdf, path.join(process.env.STYLET_SCREENSHOTS, `${name}.pdf`));
   return pagesOf(pdf);
 }
 
 function checkPaper(pages, wanted) {
   assert.deepEqual(faultsOf(pages), []);
   pages.forEach(({ width, height, words }, page) => {
-    assert.ok(Math.abs(width - 595) < 1.5 && Math.abs(height - 842) < 1.5, `page ${page + 1} is ${width} × ${height} pt, not A4`);
+    const isA4 = Math.abs(width - 595) < 1.5 && Math.abs(height - 842) < 1.5;
+    assert.ok(isA4, `page ${page + 1} is ${width} × ${height} pt, not A4`);
     const text = words.map((w) => w.text).join(' ');
     for (const part of ['Patient ID', 'Computed on', 'not a medical device', `Page ${page + 1} of ${pages.length}`]) {
       assert.ok(text.includes(part), `page ${page + 1} says "${part}"`);
@@ -125,10 +129,11 @@ const WHOLE_PLAN = fileURLToPath(new URL('../../../scenarios/demo_plan.csv', imp
 
 test('the report of a plan that is compared with a dose grid fits on A4', async () => {
   stylet('phantom', '-o', 'case');
-  stylet('dose', WHOLE_PLAN, '--structures', 'case/phantom.dcm', '-o', 'first');
-  stylet('dose', WHOLE_PLAN, '--structures', 'case/phantom.dcm', '--compare', 'first/dose.dcm', '--compare-shift', '1', '0', '0', '-o', 'dose');
+  const plan = ['dose', WHOLE_PLAN, '--structures', 'case/phantom.dcm'];
+  stylet(...plan, '-o', 'first');
+  stylet(...plan, '--compare', 'first/dose.dcm', '--compare-shift', '1', '0', '0', '-o', 'dose');
   const pages = await print(path.join(folder, 'dose/report.html'), 'dose');
-  checkPaper(pages, [/Goals/, /Gamma index/, /Computed dose minus the dose of the file/, /SHA-256/, /Checked by/, /it has no D2cc/]);
+  checkPaper(pages, [/Goals/, /Gamma index/, /Computed dose minus the dose of the file/, /SHA-256/, /Checked by/]);
 });
 
 test('the report of an implant fits on A4', async () => {
