@@ -7,6 +7,7 @@
 
 #include "stylet/dose/evaluate.hpp"
 #include "stylet/dose/fitting_sources.hpp"
+#include "stylet/io/dose_input.hpp"
 #include "stylet/io/dose_io.hpp"
 #include "stylet/io/dose_results.hpp"
 #include "stylet/io/patient_record_io.hpp"
@@ -173,12 +174,35 @@ void print(const DoseEvaluation& e, Console& console) {
   if (const std::string dates = strength_sentence(e.strength); !dates.empty() && !strength_is_in_doubt(e.strength))
     console.say(dates);  // dates in doubt are among the warnings
   if (!e.structures.empty()) console.say(figures_text(e));
+  for (const std::string& reason : figures_left_out(e.structures)) console.say(reason);
   if (!e.goals.empty() && !e.structures.empty() && e.prescription_Gy > 0) console.say(goals_text(e));
   if (e.comparison) {
     console.say(fmt::format("Compared with {}: median ratio {:.4f}, 1st percentile {:.4f}, 99th {:.4f} ({} points)",
                             e.comparison->file, e.comparison->median_ratio, e.comparison->p1, e.comparison->p99,
                             e.comparison->points));
+    if (const auto& gamma = e.comparison->gamma) {
+      console.say(
+          fmt::format("Gamma {:g} %/{:g} mm: {:.1f} % of {} points pass locally, {:.1f} % globally (of {:g} Gy)",
+                      gamma->criteria.dose_percent, gamma->criteria.distance_mm, gamma->local_percent, gamma->points,
+                      gamma->global_percent, gamma->global_Gy));
+    }
   }
+}
+
+/// The files that the dose was computed from.
+std::vector<DoseInput> inputs_of(const DoseArguments& arguments) {
+  std::vector<DoseInput> inputs;
+  const auto add = [&](const char* role, const std::string& path) {
+    std::error_code code;
+    if (!path.empty() && fs::exists(path, code)) inputs.push_back(dose_input(role, path));
+  };
+  add("plan", arguments.plan);
+  add("structures", arguments.structures);
+  for (const std::string& source : arguments.sources) add("source model", source.substr(source.find('=') + 1));
+  add("compared dose", arguments.compare);
+  add("points", arguments.points);
+  add("goals", arguments.goals);
+  return inputs;
 }
 
 Result<> run_dose(const DoseArguments& arguments, Console& console) {
@@ -228,6 +252,8 @@ Result<> run_dose(const DoseArguments& arguments, Console& console) {
           fmt::format("The compared dose grid was moved by ({:g}, {:g}, {:g}) mm.", shift.x(), shift.y(), shift.z()));
     e->warnings.insert(e->warnings.end(), grid->notes.begin(), grid->notes.end());
   }
+  e->computed_on = date_and_time();
+  e->inputs = inputs_of(arguments);
   for (const std::string& warning : e->warnings) console.warn(warning);
   if (Result<> written = write_dose_results(*e, arguments.output, console.progress()); !written) return written;
   print(*e, console);

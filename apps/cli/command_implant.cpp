@@ -4,12 +4,14 @@
 #include "output_path.hpp"
 #include "table.hpp"
 
+#include "stylet/io/dose_input.hpp"
 #include "stylet/io/patient_record_io.hpp"
 #include "stylet/io/scenario_io.hpp"
 #include "stylet/patient/implant.hpp"
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 
 namespace stylet::cli {
@@ -98,11 +100,11 @@ std::string target_text(const ImplantOutcome& outcome) {
     const bool target = structure.region == "prostate";
     if (!target && structure.region != "urethra" && structure.region != "rectum" && structure.region != "bladder")
       continue;
-    const auto row = [&](const std::string& figure, const auto& of) {
-      table.row(
-          {structure.name, figure, fmt::format("{:.2f}", of(outcome.planned.structures[k].dvh)),
-           outcome.at_planning ? fmt::format("{:.2f}", of(outcome.at_planning->delivered.structures[k].dvh)) : "-",
-           fmt::format("{:.2f}", of(structure.dvh))});
+    const auto figure = [](double Gy) { return std::isfinite(Gy) ? fmt::format("{:.2f}", Gy) : std::string("-"); };
+    const auto row = [&](const std::string& name, const auto& of) {
+      table.row({structure.name, name, figure(of(outcome.planned.structures[k].dvh)),
+                 outcome.at_planning ? figure(of(outcome.at_planning->delivered.structures[k].dvh)) : "-",
+                 figure(of(structure.dvh))});
     };
     if (target) row("D90 [Gy]", [](const DoseVolume& dvh) { return dvh.dose_of_percent(90.0); });
     if (const double prescription = outcome.delivered.prescription_Gy; target && prescription > 0.0)
@@ -179,6 +181,27 @@ Result<> check_found_is_no_result(const std::filesystem::path& found, const std:
                      "Keep the found seeds in another folder, or choose another one with -o");
 }
 
+/// Tells all doses when and from which files they were computed.
+void add_record(ImplantOutcome& outcome, const ImplantArguments& arguments, const Scenario& scenario) {
+  std::vector<DoseInput> inputs;
+  const auto add = [&](const char* role, const std::string& path) {
+    std::error_code code;
+    if (!path.empty() && std::filesystem::exists(path, code)) inputs.push_back(dose_input(role, path));
+  };
+  add("scenario", arguments.scenario);
+  add("plan", scenario.plan.file);
+  add("patient", scenario.patient.source);
+  add("source model", scenario.plan.source);
+  add("goals", scenario.plan.goals);
+  add("found seeds", arguments.found);
+  std::vector<DoseEvaluation*> doses{&outcome.planned, &outcome.delivered};
+  if (outcome.found) doses.push_back(&outcome.found->dose);
+  for (DoseEvaluation* dose : doses) {
+    dose->inputs = inputs;
+    dose->computed_on = date_and_time();
+  }
+}
+
 Result<> run_implant(const ImplantArguments& arguments, Console& console) {
   const Result<Scenario> scenario = read_scenario(arguments.scenario, arguments.settings);
   if (!scenario) return scenario.error();
@@ -188,13 +211,14 @@ Result<> run_implant(const ImplantArguments& arguments, Console& console) {
   if (Result<> writable = check_output_folder(folder); !writable) return writable;
   if (Result<> kept = check_found_is_no_result(arguments.found, folder); !kept) return kept;
   warn_before_start(arguments.scenario, arguments.settings, console);
-  const Result<ImplantOutcome> outcome = implant(*scenario, arguments.scenario,
-                                                 {.compensate = arguments.compensate,
-                                                  .span = arguments.span,
-                                                  .found = arguments.found,
-                                                  .patient_from = arguments.patient_from},
-                                                 console.progress());
+  Result<ImplantOutcome> outcome = implant(*scenario, arguments.scenario,
+                                           {.compensate = arguments.compensate,
+                                            .span = arguments.span,
+                                            .found = arguments.found,
+                                            .patient_from = arguments.patient_from},
+                                           console.progress());
   if (!outcome) return outcome.error();
+  add_record(*outcome, arguments, *scenario);
   for (const std::string& warning : outcome->warnings) console.warn(warning);
   if (Result<> written = write_implant_results(*outcome, folder, console.progress()); !written) return written;
   double seconds = 0.0;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 namespace stylet {
@@ -52,6 +53,27 @@ void drop_strange_ends(std::vector<double>& ratio, std::vector<Index>& frames, c
   }
 }
 
+template <class T>
+void keep_only(std::vector<T>& values, const std::vector<bool>& kept) {
+  std::size_t to = 0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (kept[k]) values[to++] = values[k];
+  }
+  values.resize(to);
+}
+
+/// Our dose − theirs [Gy] on the points of their grid; NaN at all others. @param places of the points in the grid
+DoseGrid difference_grid(const DoseGrid& grid, const std::vector<std::size_t>& places, const std::vector<double>& ours,
+                         const std::vector<double>& theirs, const Vec3& shift_mm) {
+  DoseGrid difference = grid;
+  difference.origin_mm += shift_mm;
+  difference.notes.clear();
+  std::fill(difference.dose_Gy.begin(), difference.dose_Gy.end(), std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t p = 0; p < places.size(); ++p)
+    difference.dose_Gy[places[p]] = static_cast<float>(ours[p] - theirs[p]);
+  return difference;
+}
+
 }  // namespace
 
 Result<> compare_with_grid(DoseEvaluation& e, const DoseGrid& grid, std::span<const DoseStructure> structures,
@@ -71,40 +93,52 @@ Result<> compare_with_grid(DoseEvaluation& e, const DoseGrid& grid, std::span<co
   };
   std::vector<Vec3> points;
   std::vector<double> theirs;
-  std::vector<Index> frames;
+  std::vector<std::size_t> places;  // of the points in the grid
+  std::vector<bool> apart;          // whether they are far enough from the sources to be compared
+  std::vector<Index> frames;        // of the points that are
   std::size_t n = 0;
   for (Index k = 0; k < grid.size[2]; ++k) {
     for (Index j = 0; j < grid.size[1]; ++j) {
       for (Index i = 0; i < grid.size[0]; ++i, ++n) {
         const auto dose = static_cast<double>(grid.dose_Gy[n]);
-        if (dose < least || dose <= 0.0 || dose >= most) continue;
+        if (!(dose >= least) || dose <= 0.0 || dose >= most) continue;
         const Vec3 x = grid.point(i, j, k) + shift_mm;
-        const bool near = std::any_of(e.plan.sources.begin(), e.plan.sources.end(), [&](const PlannedSource& s) {
-          return gives_dose(s) && (x - s.at_mm).squaredNorm() < near_mm * near_mm;
-        });
-        if (near) continue;
         points.push_back(x);
         theirs.push_back(dose);
-        frames.push_back(k);
+        places.push_back(n);
+        apart.push_back(std::none_of(e.plan.sources.begin(), e.plan.sources.end(), [&](const PlannedSource& s) {
+          return gives_dose(s) && (x - s.at_mm).squaredNorm() < near_mm * near_mm;
+        }));
+        if (apart.back()) frames.push_back(k);
       }
     }
   }
-  if (points.empty()) {
+  if (frames.empty()) {
     return input_error(grid.file,
                        "no point of the dose grid can be compared: all lie near a source or have hardly any dose",
                        "Give the dose grid that belongs to this plan");
   }
-  Result<std::vector<double>> ours = doses_at(e, options, points);
-  if (!ours) return ours.error();
-  std::vector<double> ratio = *std::move(ours);
-  for (std::size_t p = 0; p < ratio.size(); ++p) ratio[p] /= theirs[p];
+  const DoseAtPoints dose_at = [&](std::span<const Vec3> at) { return doses_at(e, options, at); };
+  Result<std::vector<double>> computed = dose_at(points);
+  if (!computed) return computed.error();
+  std::vector<double>& ours = *computed;
+  DoseGrid difference = difference_grid(grid, places, ours, theirs, shift_mm);
+  keep_only(points, apart);
+  keep_only(ours, apart);
+  keep_only(theirs, apart);
+  std::vector<double> ratio(ours.size());
+  for (std::size_t p = 0; p < ratio.size(); ++p) ratio[p] = ours[p] / theirs[p];
   drop_strange_ends(ratio, frames, grid, e.warnings);
   std::sort(ratio.begin(), ratio.end());
   const auto at = [&](double share) {
     return ratio[static_cast<std::size_t>(share * static_cast<double>(ratio.size() - 1))];
   };
   if (Result<> alike = dose::check_ratio(e, grid, at(0.5), options); !alike) return alike;
-  e.comparison = DoseComparison{grid.file, ratio.size(), at(0.5), at(0.01), at(0.99)};
+  const double global_Gy =
+      e.prescription_Gy > 0.0 ? e.prescription_Gy : *std::max_element(theirs.begin(), theirs.end());
+  const Result<GammaRates> gamma = gamma_rates(points, theirs, ours, dose_at, global_Gy);
+  if (!gamma) return gamma.error();
+  e.comparison = DoseComparison{grid.file, ratio.size(), at(0.5), at(0.01), at(0.99), *gamma, std::move(difference)};
   if (std::abs(at(0.5) - 1.0) > 0.02) {
     e.warnings.push_back(fmt::format(
         "The computed dose is {:.3f} times that of {} (median). Formalism, source model or strength may differ.",

@@ -30,9 +30,9 @@ DoseVolume::DoseVolume(std::span<const double> dose_Gy, std::span<const double> 
 double DoseVolume::volume_cc() const { return volume_.empty() ? 0.0 : volume_.back() / kMm3PerCc; }
 
 double DoseVolume::dose_of_volume(double cc) const {
-  if (dose_.empty()) return std::numeric_limits<double>::quiet_NaN();
   // A sum of many volumes may miss a round share by its rounding.
   const double wanted = cc * kMm3PerCc * (1.0 - 1e-12);
+  if (dose_.empty() || wanted > volume_.back()) return std::numeric_limits<double>::quiet_NaN();
   const auto at = std::lower_bound(volume_.begin(), volume_.end(), wanted);
   const auto k = std::min(static_cast<std::size_t>(at - volume_.begin()), dose_.size() - 1);
   return dose_[k];

@@ -2,6 +2,7 @@
 #include "stylet/dose/goals.hpp"
 
 #include <charconv>
+#include <cmath>
 #include <string_view>
 
 namespace stylet {
@@ -78,6 +79,7 @@ std::optional<double> figure_of(const DoseMetric& metric, const DoseVolume& dvh,
   }
   const double dose = metric.kind == DoseMetric::Kind::dose_of_percent ? dvh.dose_of_percent(metric.amount)
                                                                        : dvh.dose_of_volume(metric.amount);
+  if (!std::isfinite(dose)) return std::nullopt;
   if (!relative) return dose;
   return prescription_Gy > 0.0 ? std::optional(100.0 * dose / prescription_Gy) : std::nullopt;
 }

@@ -112,7 +112,8 @@ TEST(DoseVolume, of_a_linear_dose_is_known) {
   EXPECT_NEAR(dvh.dose_of_percent(90.0), 10.1, 1e-9) << "900 of 1000 samples have this dose or more";
   EXPECT_NEAR(dvh.dose_of_percent(100.0), 0.1, 1e-9);
   EXPECT_NEAR(dvh.dose_of_volume(2.0), 90.1, 1e-9);
-  EXPECT_NEAR(dvh.dose_of_volume(50.0), 0.1, 1e-9) << "more than the structure";
+  EXPECT_TRUE(std::isnan(dvh.dose_of_volume(50.0))) << "more than the structure";
+  EXPECT_NEAR(dvh.dose_of_volume(dvh.volume_cc()), 0.1, 1e-9) << "all of it";
   EXPECT_NEAR(dvh.percent_above(50.0), 50.1, 1e-9);
   EXPECT_NEAR(dvh.volume_above_cc(75.0), 5.02, 1e-9);
   EXPECT_EQ(dvh.percent_above(101.0), 0.0);

@@ -178,12 +178,51 @@ TEST(CompareWithGrid, finds_the_ratio_of_a_grid_that_was_scaled_and_the_part_of_
   EXPECT_NEAR(e.comparison->p1, 2.0, 1e-4);
   EXPECT_EQ(e.structures[0].covered_by_grid_percent, 100.0);
   EXPECT_EQ(e.warnings.size(), before + 1) << "the ratio is told";
+  ASSERT_TRUE(e.comparison->gamma.has_value());
+  EXPECT_LT(e.comparison->gamma->local_percent, 5.0) << "twice the dose passes nowhere";
+  double largest = 0.0;
+  for (std::size_t k = 0; k < grid.dose_Gy.size(); ++k) {
+    const float difference = e.comparison->difference.dose_Gy[k];
+    if (std::isfinite(difference) && grid.dose_Gy[k] < 1000.0F)
+      largest = std::max<double>(largest, std::abs(difference / grid.dose_Gy[k] - 1.0F));
+  }
+  EXPECT_LT(largest, 1e-3) << "ours minus theirs is theirs";
   // The lower half of the grid only: half of the ball.
   grid.size[2] = static_cast<Index>(std::lround((0.0 - grid.origin_mm.z()) / grid.spacing_mm.z())) + 1;
   grid.origin_mm.z() = -grid.spacing_mm.z() * (grid.size[2] - 1);
   grid.dose_Gy.resize(grid.count());
   ASSERT_TRUE(compare_with_grid(e, grid, structures, {}).ok());
   EXPECT_NEAR(e.structures[0].covered_by_grid_percent, 50.0, 1.0);
+}
+
+TEST(CompareWithGrid, passes_gamma_with_its_own_dose_and_hardly_with_one_that_was_moved_by_three_millimetres) {
+  DoseEvaluation e = evaluate_dose(plan_of(20, 8), source(), {}, {}).value();
+  const DoseGrid grid = e.grid;
+  ASSERT_TRUE(compare_with_grid(e, grid, {}, {}).ok());
+  EXPECT_EQ(e.comparison->gamma->local_percent, 100.0);
+  EXPECT_EQ(e.comparison->gamma->global_percent, 100.0);
+  ASSERT_TRUE(compare_with_grid(e, grid, {}, {}, Vec3(0.5, 0.3, 0.0)).ok());
+  EXPECT_GT(e.comparison->gamma->local_percent, 99.0) << "within the distance to agreement";
+  ASSERT_TRUE(compare_with_grid(e, grid, {}, {}, Vec3(3.0, 0.0, 0.0)).ok());
+  EXPECT_LT(e.comparison->gamma->local_percent, 50.0);
+  EXPECT_LE(e.comparison->gamma->local_percent, e.comparison->gamma->global_percent + 1e-9);
+}
+
+TEST(DoseFigures, that_a_structure_is_too_small_for_are_left_out_with_the_reason) {
+  const std::vector<DoseStructure> structures{structure_of(ball(6.5, "Urethra"), 0.25, "urethra"),
+                                              structure_of(ball(15.0), 0.5, "prostate")};
+  DoseOptions options;
+  options.goals = {{"urethra", "D2cc_Gy", false, 1e6, "here"},
+                   {"urethra", "D0.1cc_percent", false, 1e6, "here"},
+                   {"prostate", "D2cc_percent", false, 1e6, "here"}};
+  const DoseEvaluation e = evaluate_dose(plan_of(20, 8), source(), structures, options).value();
+  EXPECT_FALSE(e.goals[0].value.has_value()) << "no 2 cc in 1.2 cc";
+  EXPECT_TRUE(e.goals[1].value.has_value());
+  EXPECT_TRUE(e.goals[2].value.has_value());
+  const std::vector<std::string> told = figures_left_out(e.structures);
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_NE(told[0].find("'Urethra' has 1."), std::string::npos) << told[0];
+  EXPECT_NE(told[0].find("no D2cc."), std::string::npos) << told[0];
 }
 
 TEST(CompareWithGrid, refuses_a_grid_of_another_frame_of_reference) {

@@ -6,6 +6,7 @@
 #include "stylet/dose/dose_grid.hpp"
 #include "stylet/dose/dose_plan.hpp"
 #include "stylet/dose/dose_volume.hpp"
+#include "stylet/dose/gamma.hpp"
 #include "stylet/dose/goals.hpp"
 #include "stylet/dose/patient_record.hpp"
 #include "stylet/dose/source_model.hpp"
@@ -48,13 +49,27 @@ struct JudgedGoal {
   bool met = false;
 };
 
+/// Sentences about figures that some structures do not have because they are too small, such as D2cc of 1.3 cc.
+[[nodiscard]] std::vector<std::string> figures_left_out(const std::vector<StructureDose>& structures);
+
 /// How a dose grid from a file compares with the computed dose.
 struct DoseComparison {
   std::string file;
-  std::size_t points = 0;     ///< number of grid points compared
-  double median_ratio = 0.0;  ///< median of computed dose / dose of the file
-  double p1 = 0.0;            ///< 1st percentile of this ratio
-  double p99 = 0.0;           ///< 99th percentile
+  std::size_t points = 0;           ///< number of grid points compared
+  double median_ratio = 0.0;        ///< median of computed dose / dose of the file
+  double p1 = 0.0;                  ///< 1st percentile of this ratio
+  double p99 = 0.0;                 ///< 99th percentile
+  std::optional<GammaRates> gamma;  ///< of the same points
+  /// Computed dose − dose of the file [Gy] on the points of the file's grid, moved as asked; NaN where the file has
+  /// less than the least dose that is compared, or a number that cannot be stored. Points near sources are included.
+  DoseGrid difference;
+};
+
+/// A file from which a dose was computed.
+struct DoseInput {
+  std::string role;    ///< what it is: "plan", "structures", …
+  std::string path;    ///< file or folder
+  std::string sha256;  ///< in hexadecimal; empty: unknown
 };
 
 /// A plan with its dose: everything that report, JSON and tables of `stylet dose` say.
@@ -73,6 +88,8 @@ struct DoseEvaluation {
   std::vector<double> point_Gy;  ///< dose at `points`
   DoseGrid grid;                 ///< dose around sources and structures
   std::optional<DoseComparison> comparison;
+  std::string computed_on;        ///< date and time; evaluate_dose() leaves it empty
+  std::vector<DoseInput> inputs;  ///< files that the results name with their hashes; evaluate_dose() leaves it empty
   std::vector<std::string> assumptions;  ///< sentences: formalism, source, orientations, slabs at the ends
   std::vector<std::string> warnings;     ///< sentences about what the user should look at
 };

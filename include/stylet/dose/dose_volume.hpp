@@ -15,8 +15,8 @@ class DoseVolume {
   [[nodiscard]] double volume_cc() const;
   /// D90 for 90: the largest dose [Gy] that at least this share of the volume receives. @param percent 0 … 100
   [[nodiscard]] double dose_of_percent(double percent) const;
-  /// D2cc for 2: the largest dose [Gy] that at least this volume receives; the least dose of all where the structure is
-  /// smaller. @param cc > 0
+  /// D2cc for 2: the largest dose [Gy] that at least this volume receives. NaN where the structure is smaller: such a
+  /// figure does not exist (figures_left_out() says so in words). @param cc > 0
   [[nodiscard]] double dose_of_volume(double cc) const;
   /// V100 for the prescribed dose: share [%] of the volume that receives at least this dose.
   [[nodiscard]] double percent_above(double dose_Gy) const;

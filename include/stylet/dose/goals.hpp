@@ -41,7 +41,8 @@ struct GoalText {
 /// =, and a number. @param where place of the goal for the message
 Result<DoseGoal> parse_goal(const GoalText& text, const std::string& where);
 
-/// The value of a figure of a histogram [unit of the figure]; empty if it needs a prescribed dose and there is none.
+/// The value of a figure of a histogram [unit of the figure]; empty if it needs a prescribed dose and there is none, or
+/// more volume than the structure has.
 /// @param prescription_Gy prescribed dose [Gy]; 0: none is known
 [[nodiscard]] std::optional<double> figure_of(const DoseMetric& metric, const DoseVolume& dvh, double prescription_Gy);
 

@@ -11,6 +11,7 @@ import { buildHistogram } from './plots/histogram';
 import { buildLegend, CurveChoice } from './plots/legend';
 import { buildViewer } from './viewer/panel';
 import { build } from './page_part';
+import { unfoldForPaper } from './paper';
 
 function box(id: string): HTMLElement {
   const element = document.getElementById(id);
@@ -19,6 +20,7 @@ function box(id: string): HTMLElement {
 }
 
 document.documentElement.classList.add('with-script');
+unfoldForPaper();
 const data = decode(box('report-data').textContent ?? '');
 const moment = new Moment(data);
 

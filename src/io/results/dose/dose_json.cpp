@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dose/goal_text.hpp"
+#include "stylet/core/version.hpp"
 #include "stylet/io/dose_results.hpp"
 
 #include <nlohmann/json.hpp>
@@ -48,13 +49,24 @@ OrderedJson point_row(const Vec3& x, double dose_Gy) {
   return {{"x_mm", x.x()}, {"y_mm", x.y()}, {"z_mm", x.z()}, {"dose_Gy", dose_Gy}};
 }
 
+OrderedJson gamma_json(const GammaRates& gamma) {
+  return {{"dose_percent", gamma.criteria.dose_percent},
+          {"distance_mm", gamma.criteria.distance_mm},
+          {"threshold_percent", gamma.criteria.threshold_percent},
+          {"global_Gy", gamma.global_Gy},
+          {"points", gamma.points},
+          {"local_pass_percent", gamma.local_percent},
+          {"global_pass_percent", gamma.global_percent}};
+}
+
 OrderedJson comparison_json(const std::optional<DoseComparison>& comparison) {
   if (!comparison) return nullptr;
   return {{"median_ratio", comparison->median_ratio},
           {"p1", comparison->p1},
           {"p99", comparison->p99},
           {"points", comparison->points},
-          {"file", comparison->file}};
+          {"file", comparison->file},
+          {"gamma", comparison->gamma ? gamma_json(*comparison->gamma) : OrderedJson(nullptr)}};
 }
 
 /// A text, or null where it is empty.
@@ -98,6 +110,20 @@ OrderedJson seed_row(const DoseEvaluation& evaluation, const PlannedSource& seed
 
 }  // namespace
 
+namespace {
+
+OrderedJson inputs_json(const std::vector<DoseInput>& inputs) {
+  OrderedJson list = OrderedJson::array();
+  for (const DoseInput& input : inputs) {
+    list.push_back({{"role", input.role},
+                    {"file", input.path},
+                    {"sha256", input.sha256.empty() ? OrderedJson(nullptr) : OrderedJson(input.sha256)}});
+  }
+  return list;
+}
+
+}  // namespace
+
 std::string dose_json(const DoseEvaluation& evaluation) {
   OrderedJson dvh = OrderedJson::array(), goals = OrderedJson::array(), points = OrderedJson::array(),
               seeds = OrderedJson::array();
@@ -119,7 +145,11 @@ std::string dose_json(const DoseEvaluation& evaluation) {
       {"implant", to_string(evaluation.plan.implant)},
       {"patient", patient_json(evaluation.patient)},
       {"strength", strength_json(evaluation.strength)},
+      {"computed_on", evaluation.computed_on.empty() ? OrderedJson(nullptr) : OrderedJson(evaluation.computed_on)},
+      {"program", std::string("Stylet ") + version()},
+      {"inputs", inputs_json(evaluation.inputs)},
       {"dvh", dvh},
+      {"left_out", figures_left_out(evaluation.structures)},
       {"goals", goals},
       {"points", points},
       {"compare", comparison_json(evaluation.comparison)},

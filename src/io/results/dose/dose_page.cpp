@@ -5,6 +5,7 @@
 #include "dose/dvh_picture.hpp"
 #include "dose/dvh_table.hpp"
 #include "dose/page_data.hpp"
+#include "dose/page_record.hpp"
 #include "dose/page_shell.hpp"
 #include "dose/page_tables.hpp"
 #include "dose/structure_look.hpp"
@@ -12,18 +13,7 @@
 #include "report/html_parts.hpp"
 #include "report/text.hpp"
 
-#include <filesystem>
-
 namespace stylet::results {
-namespace {
-
-std::string title_of(const DosePlan& plan) {
-  if (!plan.label.empty()) return plan.label;
-  const std::string name = std::filesystem::path(plan.file).filename().string();
-  return name.empty() ? "Brachytherapy plan" : name;
-}
-
-}  // namespace
 
 Result<std::string> dose_page(const DoseEvaluation& evaluation) {
   const std::vector<std::string> colours = structure_colours(evaluation.structures);
@@ -32,9 +22,10 @@ Result<std::string> dose_page(const DoseEvaluation& evaluation) {
       {"report", "dose report"},
       {"kicker", "Dose of a brachytherapy plan"},
       {"kind", "computation"},
-      {"title", html_escaped(title_of(evaluation.plan))},
+      {"title", html_escaped(plan_name(evaluation.plan))},
       {"facts", html_prose(plan_line(evaluation))},
-      {"css", std::string(dose_css())},
+      {"css", std::string(dose_css()) + printed_margins(evaluation)},
+      {"record", record_of(evaluation)},
       {"warnings", box_of_warnings(evaluation.warnings)},
       {"tiles", dose_tiles(evaluation)},
       {"goals", goal_table({{"Plan", &evaluation}})},

@@ -10,12 +10,16 @@
 
 namespace stylet::results {
 
-std::string gray(double dose_Gy) { return fixed(dose_Gy, std::abs(dose_Gy) < 99.95 ? 1 : 0) + "&nbsp;Gy"; }
+std::string gray(double dose_Gy) {
+  if (!std::isfinite(dose_Gy)) return "–";
+  return fixed(dose_Gy, std::abs(dose_Gy) < 99.95 ? 1 : 0) + "&nbsp;Gy";
+}
 
 std::string percent(double value) { return fixed(value, 1) + "&nbsp;%"; }
 
 std::string small_share(double dose_Gy, double of_Gy) {
-  return of_Gy > 0.0 ? "<small>" + fixed(100.0 * dose_Gy / of_Gy, 0) + "&nbsp;%</small>" : std::string();
+  return of_Gy > 0.0 && std::isfinite(dose_Gy) ? "<small>" + fixed(100.0 * dose_Gy / of_Gy, 0) + "&nbsp;%</small>"
+                                               : std::string();
 }
 
 std::string plan_line(const DoseEvaluation& evaluation) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dose/page_data.hpp"
 
+#include "dose/difference_view.hpp"
 #include "dose/dose_view.hpp"
 #include "dose/structure_look.hpp"
 #include "dose/structure_mask.hpp"
@@ -24,6 +25,7 @@ constexpr double kMostCubes = 1.4e6;       // one byte each
 constexpr double kMostTriangles = 6e4;     // 18 bytes each
 constexpr double kMostDosePoints = 7e5;    // two bytes each
 constexpr std::size_t kMostCloud = 40000;  // twelve bytes each
+constexpr double kMostCorners = 1e5;       // twelve bytes each
 
 PageJson three(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
@@ -61,6 +63,35 @@ PageJson structure_surface_json(const StructureSurface& surface) {
           {"triangles", base64_of<std::uint32_t>(surface.triangles)}};
 }
 
+/// The contours themselves, for the sections that lie in their planes.
+PageJson contours_json(const StructureDose& structure, double share) {
+  std::size_t corners = 0;
+  for (const Contour& contour : structure.contours) corners += contour.points.size();
+  const auto every = static_cast<std::size_t>(1.0 + static_cast<double>(corners) / (share * kMostCorners));
+  PageJson list = PageJson::array();
+  for (const Contour& contour : structure.contours) {
+    if (contour.points.size() < 3) continue;
+    std::vector<Vec3> points;  // a contour with few corners keeps all of them
+    const std::size_t step = contour.points.size() > 24 * every ? every : 1;
+    for (std::size_t k = 0; k < contour.points.size(); k += step) points.push_back(contour.points[k]);
+    list.push_back(points_text(points, points.size()));
+  }
+  return list;
+}
+
+PageJson difference_json(const DoseEvaluation& evaluation, const DoseView& view,
+                         const std::vector<IsodoseLevel>& levels) {
+  if (!evaluation.comparison || evaluation.comparison->difference.dose_Gy.empty() || levels.empty()) return nullptr;
+  const double limit_Gy = 0.2 * levels.front().dose_Gy;  // a tenth of the dose of the second line
+  const ViewedDifference seen =
+      viewed_difference(evaluation.comparison->difference, view, limit_Gy, 0.5 * kMostDosePoints);
+  return {{"size", seen.size},
+          {"origin_mm", three(seen.origin_mm)},
+          {"spacing_mm", seen.spacing_mm},
+          {"limit_Gy", seen.limit_Gy},
+          {"values", base64_of<std::uint8_t>(seen.value)}};
+}
+
 PageJson structures_json(const DoseEvaluation& evaluation, const std::vector<std::string>& colours) {
   PageJson list = PageJson::array();
   const double share = 1.0 / std::max(4.0, static_cast<double>(evaluation.structures.size()));
@@ -75,6 +106,7 @@ PageJson structures_json(const DoseEvaluation& evaluation, const std::vector<std
          {"background", surrounds_others(structure)},
          {"mask", mask ? mask_json(*mask) : PageJson(nullptr)},
          {"surface", mask ? structure_surface_json(mask_surface(*mask, share * kMostTriangles)) : PageJson(nullptr)},
+         {"contours_mm", contours_json(structure, share)},
          {"cloud_mm", mask ? PageJson("") : points_text(structure.cloud, most_cloud)}});
   }
   return list;
@@ -129,6 +161,7 @@ std::string dose_page_data(const DoseEvaluation& evaluation, const DvhTable& dvh
       {"half_mm", view.half_mm},
       {"levels", levels_json(levels)},
       {"dose", dose_grid_json(viewed_dose(evaluation.grid, view, ceiling, kMostDosePoints))},
+      {"difference", difference_json(evaluation, view, levels)},
       {"structures", structures_json(evaluation, colours)},
       {"sources", sources_json(evaluation)},
   };

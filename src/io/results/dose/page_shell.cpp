@@ -13,7 +13,7 @@ namespace {
 
 // The places where scripts put histograms and sections (web/report/src/dose/page.ts).
 constexpr const char* kDvhPlot =
-    "<div class=\"needs-script\"><div class=\"legend\" id=\"dvh-legend\"></div><div class=\"plot\" id=\"dvh-plot\">"
+    "<div class=\"needs-script on-screen\"><div class=\"legend\" id=\"dvh-legend\"></div><div class=\"plot\" id=\"dvh-plot\">"
     "</div></div>";
 constexpr const char* kSectionPictures =
     "<div class=\"needs-script\"><div class=\"iso-key\" id=\"iso-key\"></div><div class=\"sections\" "
@@ -23,7 +23,7 @@ constexpr const char* kSectionPictures =
 
 Result<std::string> page_about_dose(std::string_view body, Slots slots) {
   constexpr const char* kName = "report.html";
-  slots["dvh_plot"] = kDvhPlot + ("<noscript>" + slots["dvh_picture"] + "</noscript>");
+  slots["dvh_plot"] = kDvhPlot + ("<div class=\"for-paper\">" + slots["dvh_picture"] + "</div>");
   slots["section_pictures"] = kSectionPictures;
   Result<std::string> filled = fill_page(body, slots, kName);
   if (!filled) return filled;

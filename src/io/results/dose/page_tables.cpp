@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <filesystem>
 
 namespace stylet::results {
 namespace {
@@ -111,6 +112,28 @@ std::string figures_of(const StructureDose& structure, double prescription_Gy, b
   return with_grid ? cells + figure_cell(fixed(structure.covered_by_grid_percent, 0)) : cells;
 }
 
+/// Why some figures are "–"; nothing where none is.
+std::string reasons_of_dashes(const DoseEvaluation& evaluation) {
+  const std::vector<std::string> reasons = figures_left_out(evaluation.structures);
+  return reasons.empty() ? std::string() : "<ul class=\"reasons\">" + sentence_list(reasons) + "</ul>";
+}
+
+/// Pass rates of the gamma index, with what they are of.
+std::string gamma_text(const GammaRates& gamma, double prescription_Gy) {
+  const GammaCriteria& by = gamma.criteria;
+  return fmt::format(
+      "<h4>Gamma index, {:g} % and {:g} mm</h4><p>{} % of the points pass with {:g} % of the dose at the point "
+      "(local), "
+      "{} % with {:g} % of {:g} Gy, {} (global): {} of the points above, those with at least {:g} % of {:g} Gy. The "
+      "file "
+      "is the reference (Low et al., Med Phys 25:656, 1998). The computed dose is taken from the formula at steps of "
+      "{:g} mm along 100 directions, linearly in between.</p>",
+      by.dose_percent, by.distance_mm, fixed(gamma.local_percent, 1), by.dose_percent, fixed(gamma.global_percent, 1),
+      by.dose_percent, gamma.global_Gy,
+      prescription_Gy > 0.0 ? "the prescribed dose" : "the largest dose that is compared", gamma.points,
+      by.threshold_percent, gamma.global_Gy, by.distance_mm / 5.0);
+}
+
 }  // namespace
 
 std::string dvh_figures(const std::vector<NamedDose>& doses, const std::vector<std::string>& colours) {
@@ -136,17 +159,24 @@ std::string dvh_figures(const std::vector<NamedDose>& doses, const std::vector<s
       rows += figures_of(dose.evaluation->structures[k], first.prescription_Gy, alone) + "</tr>";
     }
   }
-  return scrolled_table("scroll", "figures", head, rows);
+  return scrolled_table("scroll", "figures", head, rows) + reasons_of_dashes(first);
 }
 
 std::string points_and_comparison(const DoseEvaluation& evaluation) {
   std::string html;
   if (const auto& compared = evaluation.comparison) {
     html += fmt::format(
-        "<h3>Compared with {}</h3><p>At {} points of this grid the computed dose is {:.3f} times the dose of the file "
-        "in "
-        "the median; the ratio lies between {:.3f} and {:.3f} at 98 % of the points.</p>",
-        html_escaped(compared->file), compared->points, compared->median_ratio, compared->p1, compared->p99);
+        "<h3>Compared with {}</h3><p>At {} points of this grid, more than 4 mm from each source, the computed dose is "
+        "{:.3f} times the dose of the file in the median; the ratio lies between {:.3f} and {:.3f} at 98 % of the "
+        "points.</p>",
+        html_escaped(std::filesystem::path(compared->file).filename().string()), compared->points,
+        compared->median_ratio, compared->p1, compared->p99);
+    if (compared->gamma) html += gamma_text(*compared->gamma, evaluation.prescription_Gy);
+    if (!compared->difference.dose_Gy.empty()) {
+      html +=
+          "<div class=\"needs-script\"><h4>Computed dose minus the dose of the file</h4><div class=\"iso-key\" "
+          "id=\"difference-key\"></div><div class=\"sections\" id=\"difference-pictures\"></div></div>";
+    }
   }
   if (evaluation.points.empty()) return html;
   std::string rows;
@@ -169,8 +199,9 @@ std::string seed_table(const DoseEvaluation& evaluation) {
   for (const PlannedSource& source : evaluation.plan.sources) {
     rows += "<tr>" + figure_cell(fmt::format("{}", ++number)) + text_cell(source.needle);
     for (int k = 0; k < 3; ++k) rows += figure_cell(fixed(source.at_mm[k], 2));
-    rows += text_cell(fmt::format("({:.3f}, {:.3f}, {:.3f}){}", source.axis.x(), source.axis.y(), source.axis.z(),
-                                  source.has_axis ? "" : ", assumed"));
+    rows +=
+        text_cell(with_minus_signs(fmt::format("({}, {}, {}){}", fixed(source.axis.x(), 3), fixed(source.axis.y(), 3),
+                                               fixed(source.axis.z(), 3), source.has_axis ? "" : ", assumed")));
     rows += figure_cell(fixed(source.strength_U, 4));
     if (temporary) rows += figure_cell(fixed(source.dwell_s, 2));
     rows += "</tr>";
@@ -188,7 +219,7 @@ std::string plan_facts(const DoseEvaluation& evaluation) {
   const DosePlan& plan = evaluation.plan;
   const SourceModel& source = evaluation.source;
   const bool known = evaluation.prescription_Gy > 0.0;
-  return definition("Plan", plan.file) + definition("Label", plan.label) +
+  return definition("Plan", std::filesystem::path(plan.file).filename().string()) + definition("Label", plan.label) +
          definition("Implant", plan.implant == Implant::permanent ? "permanent" : "temporary") +
          definition("Prescribed dose", known ? fmt::format("{:g} Gy", evaluation.prescription_Gy) : "none is known") +
          definition("Dose shown", evaluation.quantity) + definition("Date of the strength", plan.strength_date) +

@@ -15,7 +15,7 @@ namespace stylet::results {
 namespace {
 
 // Sizes of a picture in its own units.
-constexpr double kErrorLeft = 54, kErrorRight = 10, kErrorTop = 10, kErrorWide = 396, kErrorHigh = 250,
+constexpr double kErrorLeft = 60, kErrorRight = 10, kErrorTop = 10, kErrorWide = 396, kErrorHigh = 250,
                  kErrorBelow = 46;
 
 /// A range of numbers with round ticks.
@@ -64,10 +64,7 @@ struct ErrorScales {
   }
 };
 
-std::string error_tick(double value) {
-  const std::string text = fmt::format("{:g}", std::abs(value));
-  return value < 0.0 ? "−" + text : text;
-}
+std::string error_tick(double value) { return with_minus_signs(fmt::format("{:g}", value == 0.0 ? 0.0 : value)); }
 
 std::string error_frame(const ErrorScales& scales, std::size_t axis) {
   std::string svg;
@@ -84,13 +81,12 @@ std::string error_frame(const ErrorScales& scales, std::size_t axis) {
         "text-anchor=\"middle\">{3}</text>",
         scales.x(mm), kErrorTop + kErrorHigh, kErrorTop + kErrorHigh + 20, error_tick(mm));
   }
-  return svg +
-         fmt::format(
-             "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">Planned position, inferior to superior [mm]</text><text "
-             "transform=\"translate(14 {}) rotate(-90)\" text-anchor=\"middle\">Error [mm]</text><text class=\"end\" "
-             "x=\"{}\" y=\"{}\">{} ↑</text><text class=\"end\" x=\"{}\" y=\"{}\">{} ↓</text>",
-             kErrorLeft + kErrorWide / 2, kErrorTop + kErrorHigh + 41, kErrorTop + kErrorHigh / 2, kErrorLeft + 6,
-             kErrorTop + 14, kToward[axis], kErrorLeft + 6, kErrorTop + kErrorHigh - 6, kAgainst[axis]);
+  return svg + fmt::format(
+                   "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">Planned position, inferior to superior [mm]</text>"
+                   "<text transform=\"translate(15 {}) rotate(-90)\" text-anchor=\"middle\">← {} · Error [mm] · {} →"
+                   "</text>",
+                   kErrorLeft + kErrorWide / 2, kErrorTop + kErrorHigh + 41, kErrorTop + kErrorHigh / 2, kAgainst[axis],
+                   kToward[axis]);
 }
 
 std::string error_picture(const ImplantHistory& history, const std::vector<std::size_t>& thirds,

@@ -5,6 +5,7 @@
 #include "dose/dvh_picture.hpp"
 #include "dose/dvh_table.hpp"
 #include "dose/page_data.hpp"
+#include "dose/page_record.hpp"
 #include "dose/page_shell.hpp"
 #include "dose/page_tables.hpp"
 #include "dose/structure_look.hpp"
@@ -94,7 +95,8 @@ Result<std::string> implant_page(const ImplantOutcome& outcome) {
       {"kind", "simulation"},
       {"title", html_escaped(outcome.scenario.name)},
       {"facts", html_prose(plan_line(outcome.planned))},
-      {"css", std::string(implant_css())},
+      {"css", std::string(implant_css()) + printed_margins(outcome.planned)},
+      {"record", record_of(outcome.planned)},
       {"warnings", box_of_warnings(outcome.warnings)},
       {"tiles", implant_tiles(outcome)},
       {"story", implant_story(outcome)},

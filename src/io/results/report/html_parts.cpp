@@ -6,7 +6,9 @@
 namespace stylet::results {
 
 std::string text_cell(const std::string& text) { return "<td>" + html_escaped(text) + "</td>"; }
-std::string figure_cell(const std::string& text) { return "<td class=\"number\">" + html_escaped(text) + "</td>"; }
+std::string figure_cell(const std::string& text) {
+  return "<td class=\"number\">" + html_escaped(with_minus_signs(text)) + "</td>";
+}
 std::string text_heading(const std::string& text) { return "<th>" + html_escaped(text) + "</th>"; }
 std::string figure_heading(const std::string& text) { return "<th class=\"number\">" + html_escaped(text) + "</th>"; }
 
@@ -17,7 +19,7 @@ std::string scrolled_table(const std::string& frame_style, const std::string& st
 }
 
 std::string figure_tile(const std::string& value, const std::string& caption) {
-  return "<li><b>" + value + "</b><span>" + html_escaped(caption) + "</span></li>";
+  return "<li><b>" + with_minus_signs(value) + "</b><span>" + html_escaped(caption) + "</span></li>";
 }
 
 std::string definition(const std::string& name, const std::string& value) {

@@ -37,7 +37,7 @@ std::string html_escaped(std::string_view text) {
 
 std::string html_prose(std::string_view text) {
   constexpr std::array<std::string_view, 6> kUnits{"mm", "N", "s", "µs", "%", "kHz"};
-  const std::string plain = html_escaped(text);
+  const std::string plain = html_escaped(with_minus_signs(text));
   const auto is_letter = [&](std::size_t at) {
     return at < plain.size() && std::isalnum(static_cast<unsigned char>(plain[at])) != 0;
   };
@@ -51,6 +51,20 @@ std::string html_prose(std::string_view text) {
     html += keep ? "&nbsp;" : std::string(1, plain[k]);
   }
   return html;
+}
+
+std::string with_minus_signs(std::string_view text) {
+  const auto is = [&](std::size_t at, auto kind) {
+    return at < text.size() && kind(static_cast<unsigned char>(text[at])) != 0;
+  };
+  std::string with;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const bool number = is(k + 1, [](int c) { return std::isdigit(c); });
+    const bool within =
+        k > 0 && is(k - 1, [](int c) { return std::isalnum(c) + (c == '-') + (c == '_') + (c >= 0x80); });
+    with += text[k] == '-' && number && !within ? "−" : std::string(1, text[k]);
+  }
+  return with;
 }
 
 std::string script_safe(std::string_view javascript) {

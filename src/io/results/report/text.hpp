@@ -11,8 +11,12 @@ namespace stylet::results {
 /// Escapes a text for an element or a quoted attribute: & < > " ' become entities.
 std::string html_escaped(std::string_view text);
 
-/// Escapes a text and keeps numbers and their units on one line ("0.42 N").
+/// Escapes a text, keeps numbers and their units on one line ("0.42 N"), and puts minus signs (with_minus_signs()).
 std::string html_prose(std::string_view text);
+
+/// Puts the minus sign (U+2212) in the place of each hyphen that stands before a number and after no letter, digit or
+/// hyphen: "-1.5" becomes "−1.5"; "I-125" and "2024-01-31" stay.
+std::string with_minus_signs(std::string_view text);
 
 /// Converts JavaScript for a <script> element, in which "</script" would end the element and "<!--" would change its
 /// parsing. Both get a backslash, which does not change any JavaScript string, template or regular expression.

@@ -11,10 +11,12 @@ interface RawData {
   half_mm: number;
   levels: { dose_Gy: number; label: string; color: string; main: boolean }[];
   dose: { size: Triple; origin_mm: Triple; spacing_mm: number; scale_Gy: number; ceiling_Gy: number; values: Base64 };
+  difference: { size: Triple; origin_mm: Triple; spacing_mm: number; limit_Gy: number; values: Base64 } | null;
   structures: {
     name: string; region: string; color: string; background: boolean;
     mask: { size: Triple; origin_mm: Triple; spacing_mm: number; share: Base64 } | null;
     surface: { points_mm: Base64; triangles: Base64 } | null;
+    contours_mm: Base64[];
     cloud_mm: Base64;
   }[];
   sources: {
@@ -46,6 +48,7 @@ export interface Structure {
   background: boolean;         // surrounds the others
   mask: Grid | null;           // 0 … 1: share of each cube that lies within
   surface: { points: Float32Array; triangles: Uint32Array } | null;  // [mm] LPS
+  contours: Float32Array[];    // (3 × corners each) [mm] LPS
   cloud: Float32Array;         // (3 × points) [mm] LPS, of a structure without mask
 }
 
@@ -60,6 +63,12 @@ export interface Sources {
   dwells: number[];        // [s]
 }
 
+/** Computed dose minus that of a file. */
+export interface Difference {
+  grid: Grid;     // 0: not known; 1 … 255: −limit … limit
+  limit: number;  // [Gy]
+}
+
 export interface DoseData {
   prescription: number | null;  // [Gy]
   dvh: { dose: number[]; percent: number[][] };
@@ -68,6 +77,7 @@ export interface DoseData {
   levels: Level[];
   dose: Grid;
   ceiling: number;  // [Gy] doses above are given as this one
+  difference: Difference | null;
   structures: Structure[];
   sources: Sources;
 }
@@ -93,6 +103,13 @@ export function decode(json: string): DoseData {
       values: new Uint16Array(bytes(raw.dose.values)),
     },
     ceiling: raw.dose.ceiling_Gy,
+    difference: raw.difference && {
+      limit: raw.difference.limit_Gy,
+      grid: {
+        size: raw.difference.size, origin: raw.difference.origin_mm, spacing: raw.difference.spacing_mm, scale: 1,
+        values: new Uint8Array(bytes(raw.difference.values)),
+      },
+    },
     structures: raw.structures.map((s) => ({
       name: s.name, region: s.region, color: s.color, background: s.background,
       mask: s.mask && {
@@ -100,6 +117,7 @@ export function decode(json: string): DoseData {
         values: new Uint8Array(bytes(s.mask.share)),
       },
       surface: s.surface && { points: floats(s.surface.points_mm), triangles: new Uint32Array(bytes(s.surface.triangles)) },
+      contours: s.contours_mm.map(floats),
       cloud: floats(s.cloud_mm),
     })),
     sources: {

@@ -2,7 +2,9 @@
 // One section: isodose lines, outlines of structures and sources near the plane, as an SVG picture in millimetres.
 import { element } from '../../../shared/dom';
 import { numberText } from '../../../shared/numbers';
+import { contourPath, contourPlanes, isAt, nearestPlane, snapped, type ContourPlane } from './contour_planes';
 import type { DoseData, Level } from './data';
+import { differenceImage } from './difference';
 import { isolines, linePath, shapePath, slice, type Line } from './isolines';
 import { dashOf } from './level_look';
 import { inPicture, type Plane } from './planes';
@@ -89,13 +91,21 @@ function drawDose(svg: SVGElement, data: DoseData, plane: Plane, height: number,
   }
 }
 
-function drawStructures(svg: SVGElement, data: DoseData, plane: Plane, height: number): void {
-  for (const structure of data.structures) {
+/**
+ * Draws the structures: their contours where they have some in this plane, elsewhere what lies between.
+ * @returns heights [mm] of the nearest contours of structures that have none in this plane
+ */
+function drawStructures(svg: SVGElement, data: DoseData, plane: Plane, height: number, planes: ContourPlane[][]): number[] {
+  const nearest: number[] = [];
+  data.structures.forEach((structure, k) => {
     const g = add(svg, 'g', { class: structure.background ? 'structure background' : 'structure', fill: structure.color, stroke: structure.color });
     if (structure.mask) {
+      const near = nearestPlane(planes[k], height);
       const cut = slice(structure.mask, plane, height);
-      if (cut) add(g, 'path', { d: shapePath(cut, 0.5) });
-      continue;
+      const path = near && isAt(near, height) ? contourPath(near.contours, plane) : cut ? shapePath(cut, 0.5) : '';
+      if (path) add(g, 'path', { d: path });
+      if (path && near && !isAt(near, height)) nearest.push(near.height);
+      return;
     }
     const { cloud } = structure;
     for (let k = 0; k < cloud.length; k += 3) {
@@ -103,7 +113,8 @@ function drawStructures(svg: SVGElement, data: DoseData, plane: Plane, height: n
       const [x, y] = inPicture(plane, cloud, k);
       add(g, 'circle', { cx: x.toFixed(2), cy: y.toFixed(2), r: 0.35, stroke: 'none' });
     }
-  }
+  });
+  return [...new Set(nearest)].sort((a, b) => a - b);
 }
 
 /** Sources near the plane: capsules of their true size, seen along the plane's normal. */
@@ -124,7 +135,17 @@ function drawSources(svg: SVGElement, { sources }: DoseData, plane: Plane, heigh
   return shown;
 }
 
-export function buildSection(data: DoseData, plane: Plane, more: MoreMarks = () => undefined): HTMLElement {
+/** The middle of the view, or the plane of the target's contours nearest to it. */
+function firstHeight(data: DoseData, plane: Plane, planes: ContourPlane[][]): number {
+  const target = data.structures.findIndex((structure) => structure.region === 'prostate');
+  const near = nearestPlane(target < 0 ? [] : planes[target], data.centre[plane.normal]);
+  return near && Math.abs(near.height - data.centre[plane.normal]) < 5 ? near.height : data.centre[plane.normal];
+}
+
+/** @param withDifference a map of the difference instead of the lines of equal dose */
+export function buildSection(data: DoseData, plane: Plane, more: MoreMarks = () => undefined, withDifference = false): HTMLElement {
+  const planes = data.structures.map((structure) => contourPlanes(structure, plane.normal));
+  const allPlanes = planes.flat();
   const figure = element('figure', 'section-picture');
   const caption = element('figcaption');
   const frame = frameOf(data, plane);
@@ -136,28 +157,38 @@ export function buildSection(data: DoseData, plane: Plane, more: MoreMarks = () 
   const slider = element('input');
   slider.type = 'range';
   const middle = data.centre[plane.normal];
+  const first = firstHeight(data, plane, planes);
   slider.min = String(Math.round(middle - data.half + 1));
   slider.max = String(Math.round(middle + data.half - 1));
   slider.step = '0.5';
-  slider.value = String(middle);
+  slider.value = String(first);
   slider.setAttribute('aria-label', `Position of the ${plane.name.toLowerCase()} section`);
-  const clip = `clip-${plane.normal}`;
+  const clip = `clip-${plane.normal}${withDifference ? '-difference' : ''}`;
   let pending = false;
-  const draw = (height: number) => {
+  const draw = (wanted: number) => {
+    const height = snapped(allPlanes, wanted);
     pending = false;
     svg.replaceChildren();
     add(add(svg, 'clipPath', { id: clip }), 'rect', { x: left, y: top, width: size, height: size });
     const inside = add(svg, 'g', { 'clip-path': `url(#${clip})` });
-    drawStructures(inside, data, plane, height);
-    drawDose(inside, data, plane, height, frame);
+    if (withDifference && data.difference) {
+      const image = differenceImage(data.difference, plane, height);
+      if (image) add(inside, 'image', { href: image.url, x: image.x, y: image.y, width: image.width, height: image.height, preserveAspectRatio: 'none' });
+    }
+    const nearest = drawStructures(inside, data, plane, height, planes);
+    if (!withDifference) drawDose(inside, data, plane, height, frame);
     const shown = drawSources(inside, data, plane, height);
     more(inside, plane, height);
     const names = inside.querySelector('.isodose-names');
     if (names) inside.append(names);
     drawScale(svg, plane, frame);
     const kind = data.sources.temporary ? 'dwell position' : 'seed';
-    const where = `${plane.moves} = ${numberText(Math.round(10 * height) / 10)} mm`;
+    const where = `${plane.moves} = ${numberText(Math.round(100 * height) / 100)} mm`;
     caption.replaceChildren(element('b', '', plane.name), element('span', '', `${where} · ${shown} ${kind}${shown === 1 ? '' : 's'} near`));
+    if (nearest.length > 0) {
+      const heights = nearest.map((mm) => numberText(Math.round(100 * mm) / 100)).join(', ');
+      caption.append(element('span', 'between', `between planes of contours; nearest at ${plane.moves} = ${heights} mm`));
+    }
     svg.setAttribute('aria-label', `${plane.name} section at ${where}`);
   };
   slider.addEventListener('input', () => {
@@ -165,7 +196,7 @@ export function buildSection(data: DoseData, plane: Plane, more: MoreMarks = () 
     pending = true;
     requestAnimationFrame(() => draw(slider.valueAsNumber));
   });
-  draw(middle);
+  draw(first);
   figure.append(caption, svg, slider);
   return figure;
 }

@@ -62,17 +62,25 @@ export class DoseStage {
   draw(): void {
     if (this.pending) return;
     this.pending = true;
-    requestAnimationFrame(() => {
-      this.pending = false;
-      const { clientWidth: width, clientHeight: height } = this.box;
-      this.sortStructures();
-      this.renderer.setViewport(0, 0, width, height);
-      this.renderer.render(this.scene, this.camera);
-      this.cube.draw(this.renderer, this.camera, Math.round(Math.min(width, height) * 0.17));
-      const pixelsPerMm = (height * this.camera.zoom) / (2 * this.halfSize);
-      const mm = roundDown((0.16 * width) / pixelsPerMm);
-      this.scaleBar(mm, mm * pixelsPerMm);
-    });
+    requestAnimationFrame(() => this.render());
+  }
+
+  /** The picture as it is now, as the address of a PNG. */
+  still(): string {
+    this.render();
+    return this.renderer.domElement.toDataURL();
+  }
+
+  private render(): void {
+    this.pending = false;
+    const { clientWidth: width, clientHeight: height } = this.box;
+    this.sortStructures();
+    this.renderer.setViewport(0, 0, width, height);
+    this.renderer.render(this.scene, this.camera);
+    this.cube.draw(this.renderer, this.camera, Math.round(Math.min(width, height) * 0.17));
+    const pixelsPerMm = (height * this.camera.zoom) / (2 * this.halfSize);
+    const mm = roundDown((0.16 * width) / pixelsPerMm);
+    this.scaleBar(mm, mm * pixelsPerMm);
   }
 
   /** Sorts translucent surfaces: the farthest is drawn first, and a structure within another before the outer one. */

@@ -2,6 +2,7 @@
 // The 3D view of a plan with the controls of its appearance.
 import { button, element } from '../../../shared/dom';
 import { VIEWS } from '../../../shared/views';
+import { stillForPaper } from '../paper';
 import type { DoseData } from './data';
 import { DoseStage } from './stage';
 import type { StructureShape } from './structure_shape';
@@ -53,12 +54,13 @@ export function buildDoseViewer(data: DoseData, root: HTMLElement, more?: (stage
   try {
     stage = new DoseStage(data, canvas, (mm, px) => {
       bar.textContent = `${mm} mm`;
-      bar.style.width = `${px}px`;
+      bar.style.width = `${(100 * px) / picture.clientWidth}%`;
     });
   } catch {
     root.replaceChildren(element('p', 'note', 'This browser offers no WebGL, which the 3D view needs.'));
     return;
   }
+  stillForPaper(picture, () => stage.still());
   const draw = () => stage.draw();
   const side = element('div', 'side');
   const views = element('div', 'views');

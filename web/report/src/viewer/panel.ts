@@ -6,6 +6,7 @@ import { button, element } from '../../../shared/dom';
 import { colorBar, contactKey, scaleMarks } from '../../../shared/keys';
 import { regionRow } from '../../../shared/region_look';
 import { VIEWS } from '../../../shared/views';
+import { stillForPaper } from '../paper';
 import { Stage } from './stage';
 
 function regionList(stage: Stage): HTMLElement {
@@ -123,13 +124,14 @@ export function buildViewer(data: ReportData, moment: Moment, root: HTMLElement)
   try {
     stage = new Stage(data, canvas, (mm, px) => {
       bar.textContent = `${mm} mm`;
-      bar.style.width = `${px}px`;
+      bar.style.width = `${(100 * px) / picture.clientWidth}%`;
     });
   } catch {
     root.replaceChildren(element('p', 'note',
       'This browser offers no WebGL, which the interactive view needs. The pictures below show the same scene before, during and after the insertion.'));
     return;
   }
+  stillForPaper(picture, () => stage.still());
   const marks = scaleMarks(data.displacementMax);
   const most = marks[marks.length - 1];
   const side = element('div', 'side');

@@ -69,15 +69,23 @@ export class Stage {
   draw(): void {
     if (this.pending) return;
     this.pending = true;
-    requestAnimationFrame(() => {
-      this.pending = false;
-      const { clientWidth: width, clientHeight: height } = this.box;
-      this.renderer.setViewport(0, 0, width, height);
-      this.sortRegions();
-      this.renderer.render(this.scene, this.camera);
-      this.cube.draw(this.renderer, this.camera, Math.round(Math.min(width, height) * 0.17));
-      this.updateScaleBar(height);
-    });
+    requestAnimationFrame(() => this.render());
+  }
+
+  /** The picture as it is now, as the address of a PNG. */
+  still(): string {
+    this.render();
+    return this.renderer.domElement.toDataURL();
+  }
+
+  private render(): void {
+    this.pending = false;
+    const { clientWidth: width, clientHeight: height } = this.box;
+    this.renderer.setViewport(0, 0, width, height);
+    this.sortRegions();
+    this.renderer.render(this.scene, this.camera);
+    this.cube.draw(this.renderer, this.camera, Math.round(Math.min(width, height) * 0.17));
+    this.updateScaleBar(height);
   }
 
   /** Sorts translucent surfaces: the farthest is drawn first, and a region inside another before the outer region. */
