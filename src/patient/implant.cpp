@@ -43,7 +43,7 @@ Result<std::optional<FoundSeeds>> found_seeds_of(const ImplantSettings& settings
   return std::optional<FoundSeeds>(*std::move(found));
 }
 
-/// What a user has to know about the match, before believing the figures that depend on it.
+/// Warnings about the match, which a user needs before believing the figures that depend on it.
 std::vector<std::string> match_warnings(const FoundImplant& found) {
   std::vector<std::string> warnings;
   const SeedMatching& matching = found.comparison.matching;

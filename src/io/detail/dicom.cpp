@@ -39,7 +39,7 @@ std::string utf8_of_japanese(const std::string& text) {
       ++at;
       continue;
     }
-    std::size_t end = at;  // what has 7 bits, in which escape sequences may switch between alphabets
+    std::size_t end = at;  // end of the 7-bit part, in which escape sequences may switch between alphabets
     while (end < text.size() && static_cast<unsigned char>(text[end]) < 0x80) ++end;
     std::string in = text.substr(at, end - at), piece(4 * in.size() + 16, '\0');
     char* from = in.data();
