@@ -95,7 +95,7 @@ class LinearBeam final : public stylet::Needle {
   static constexpr int kModes = 12;
   static constexpr int kUnknowns = 2 * kModes;  // across the axis, two directions for each mode
 
-  /// What a coefficient of 1 in each mode does at one place.
+  /// The effect of a coefficient of 1 in each mode at one place.
   struct Modes {
     std::array<double, kModes> slope{};
     std::array<double, kModes> deflection{};  // [mm]
@@ -130,7 +130,7 @@ class LinearBeam final : public stylet::Needle {
         shape_.block<3, 2>(3 * static_cast<Eigen::Index>(c), 2 * k) = at.deflection[index(k)] * rotation.leftCols<2>();
     }
   }
-  /// What the loads leave unbalanced, into step_.
+  /// Puts the unbalanced part of the loads into step_.
   void unbalanced(std::span<const stylet::PointLoad> loads) {
     step_ = -stiffness_.cwiseProduct(q_);
     for (std::size_t c = 0; c < loads.size(); ++c)

@@ -131,7 +131,7 @@ std::string found_errors_text(const FoundComparison& comparison) {
   return table.text();
 }
 
-/// What accounts for the mean square of the errors that were found.
+/// The parts of the mean square of the errors that were found.
 std::string found_parts_text(const FoundComparison& comparison) {
   Table table({"part of the mean square error", "as found [mm²]", "[%]", "without common shift [mm²]", "[%]"});
   const auto cells = [](const std::vector<ErrorPart>& parts, const std::string& name) {

@@ -22,7 +22,7 @@ std::string with_notes(std::string text, const std::vector<std::string>& notes) 
   return text;
 }
 
-/// What the rules for plans say without structures, by the models that the plan names or that fit.
+/// The findings of the rules for plans without structures, by the models that the plan names or that fit.
 std::vector<std::string> doubts_of(const DosePlan& plan) {
   std::vector<SourceModel> models;
   for (std::size_t kind = 0; kind < kind_count(plan); ++kind) {

@@ -49,7 +49,7 @@ class LinkCompanion final : public serve::Companion {
   std::optional<Pose> probe_;  ///< of the last picture
 };
 
-/// What to do when connections are closed because of their checksums. The link does not know options of the program.
+/// The problem, with the option that cures it where it is the checksums. The link does not know the program's options.
 std::string with_option(const igtl::LinkState& state, bool checksums) {
   const bool by_checksum = checksums && state.problem.find("checksum") != std::string::npos;
   return state.problem + (by_checksum ? " (--igtl-no-checksum)" : "");

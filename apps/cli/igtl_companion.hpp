@@ -17,7 +17,7 @@ struct IgtlArguments {
   std::string listen;         ///< [IP:]PORT
   std::string connect;        ///< HOST[:PORT]
   bool no_checksum = false;   ///< take messages whose checksum is wrong
-  std::string hand = "page";  ///< what moves the needle: "page" or "igtl"
+  std::string hand = "page";  ///< mover of the needle: "page" or "igtl"
 };
 void add_igtl_options(CLI::App& app, IgtlArguments& arguments);
 

@@ -218,7 +218,7 @@ Result<DoseEvaluation> evaluate_dose(const DosePlan& plan, const SourceModel& so
   e.source = source;
   e.strength = strength_age(plan, source.half_life_days, options.decay_days);
   e.more_sources = options.more_sources;
-  for (std::size_t k = 0; k < e.more_sources.size(); ++k) {  // what was computed with, for writers
+  for (std::size_t k = 0; k < e.more_sources.size(); ++k) {  // the models of the computation, for writers
     SourceKind& kind = e.plan.more_kinds[k];
     const SourceModel& model = e.more_sources[k];
     kind.source_model = model.name;

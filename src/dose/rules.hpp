@@ -89,7 +89,7 @@ std::optional<Nuclide> nuclide(std::string_view isotope);
 /// The table, for documents.
 std::span<const Nuclide> nuclides();
 
-/// What the rules have found in a plan.
+/// Findings of the rules in a plan.
 class Findings {
  public:
   void warn(Rule rule, std::string sentence);
@@ -103,7 +103,7 @@ class Findings {
   std::optional<Error> error_;
 };
 
-/// What is judged.
+/// The plan that is judged, with its models and structures.
 struct Judged {
   const DosePlan& plan;
   std::span<const SourceModel> models;

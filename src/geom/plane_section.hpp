@@ -5,7 +5,7 @@
 
 namespace stylet::detail {
 
-/// What the contours of one plane enclose.
+/// The area that the contours of one plane enclose.
 struct PlaneSection {
   std::vector<Polygon> polygons;  ///< [mm] they do not cross; a point is inside where an odd number surround it
   double area_mm2 = 0;            ///< of the points that are inside
@@ -24,7 +24,7 @@ PlaneSection plane_section(const std::vector<Polygon>& contours);
 /// Area of a polygon [mm²], positive if its points go round counter-clockwise.
 double signed_area(const Polygon& polygon);
 
-/// What a polygon that crosses itself encloses by the even-odd rule.
+/// The area that a polygon that crosses itself encloses by the even-odd rule.
 struct EvenOdd {
   std::vector<Polygon> polygons;  ///< [mm] as in PlaneSection
   double area_mm2 = 0;

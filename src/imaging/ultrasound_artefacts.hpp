@@ -8,7 +8,7 @@
 
 namespace stylet {
 
-/// What a scanner shows besides echoes on the beam's axis: side lobes and reverberation (clutter), which is seen in
+/// Everything in a picture besides echoes on the beam's axis: side lobes and reverberation (clutter), which is seen in
 /// fluid, rings near the transducer, and the receiver's noise. All of it is fixed on the screen.
 class UltrasoundArtefacts {
  public:

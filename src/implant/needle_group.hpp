@@ -12,14 +12,14 @@ struct PlannedNeedle {
   InsertionPlan plan;
 };
 
-/// What has become of a needle and its seeds.
+/// The outcome for a needle and its seeds.
 struct NeedleOutcome {
   NeedleHistory needle;
   std::vector<SeedHistory> seeds;     ///< in the order of the load
   std::vector<std::string> warnings;  ///< sentences for the user
 };
 
-/// What has become of needles that are in the tissue together.
+/// The outcome for needles that are in the tissue together.
 struct GroupOutcome {
   std::vector<NeedleOutcome> needles;  ///< without the staying ones
   std::vector<NeedleHistory> staying;

@@ -23,7 +23,7 @@ struct Structure {
   [[nodiscard]] double spacing_mm() const;
 };
 
-/// What is known about the structures of a file.
+/// The structures of a file, with their kind.
 struct Structures {
   std::vector<Structure> all;
   std::string kind;       ///< "structure", "label" or "region"

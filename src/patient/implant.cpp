@@ -43,7 +43,7 @@ Result<std::optional<FoundSeeds>> found_seeds_of(const ImplantSettings& settings
   return std::optional<FoundSeeds>(*std::move(found));
 }
 
-/// What a user has to know about the match, before believing the figures that depend on it.
+/// Warnings about the match, which a user needs before believing the figures that depend on it.
 std::vector<std::string> match_warnings(const FoundImplant& found) {
   std::vector<std::string> warnings;
   const SeedMatching& matching = found.comparison.matching;
@@ -152,8 +152,11 @@ Result<FoundPatient> patient_of_implant(const Scenario& scenario, const ImplantP
   return patient_of(inputs);
 }
 
+/// Adds the sentences that are not there yet: mesh and dose say the same of contours.
 void append(std::vector<std::string>& all, const std::vector<std::string>& more) {
-  all.insert(all.end(), more.begin(), more.end());
+  for (const std::string& sentence : more) {
+    if (std::find(all.begin(), all.end(), sentence) == all.end()) all.push_back(sentence);
+  }
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ namespace {
 
 std::mutex mutex;
 int holders = 0;
-bool is_future_locked = false;  // what is allocated from now on is locked, too
+bool is_future_locked = false;  // memory that is allocated from now on is locked, too
 
 }  // namespace
 

@@ -89,7 +89,7 @@ void TissueProbe::search(Simulation& simulation) {
   drop.is_done = true;
   if (const auto& found = search_->found()) {
     drop.found = true;
-    // What the nearest point misses of the place counts as motion of the tissue.
+    // The distance from the place to the nearest point counts as motion of the tissue.
     drop.rest = plain(vec3(drop.place) - found->moved.whole);
     drop.lasting = plain(found->moved.lasting);
   }

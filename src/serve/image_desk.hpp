@@ -63,7 +63,7 @@ class ImageDesk {
   std::shared_ptr<const LiveImage> news();
   /// Why no picture can be made of this patient, or why its probe moves nothing in the pictures; empty: all is well.
   [[nodiscard]] std::string problem() const;
-  /// What is being prepared; empty: nothing.
+  /// The part that is being prepared; empty: nothing.
   [[nodiscard]] std::string stage() const;
   /// Where the probe does not do what the tracker's pose says; empty: it does.
   [[nodiscard]] std::string probe_problem() const;

@@ -40,7 +40,7 @@ std::vector<SurfacePoint> every_node(const TetMesh& mesh) {
   return points;
 }
 
-/// What the loop's forces do to all nodes of the mesh and, between the nodes, beside the needle.
+/// Displacement by the loop's forces of all nodes of the mesh and, between the nodes, beside the needle.
 class LoopMotion {
  public:
   explicit LoopMotion(const std::shared_ptr<const DisplayField>& field)

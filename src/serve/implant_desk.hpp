@@ -80,7 +80,7 @@ class ImplantDesk {
 
   std::shared_ptr<const ImplantCase> implant_;
   std::vector<InsertionPlan> insertions_;
-  Scenario::Seed fate_;  ///< what becomes of seeds after their drop
+  Scenario::Seed fate_;  ///< the fate of seeds after their drop
   LivePlan plan_;
   std::vector<SeedHistory> dropped_;  ///< as dropped, before they settle; in the order of the drops
   LiveImplant state_;

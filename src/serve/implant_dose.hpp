@@ -34,7 +34,7 @@ class ImplantDose {
   /// Sets the seeds, with their strength [U] as weight. Returns at once. @return number of these seeds, for News
   std::uint64_t set(std::vector<PlacedSource> seeds);
 
-  /// What has been computed since the last call.
+  /// Results that have been computed since the last call.
   struct News {
     std::optional<ImplantScore> planned;
     std::optional<ImplantScore> now;

@@ -95,7 +95,7 @@ struct Session::Parts {
   std::vector<std::unique_ptr<MapMaker>> former_maps;  ///< of earlier cases; their threads have not ended
   LiveMap map;                                         ///< the latest map of map_maker
   bool map_is_shown = false;                           ///< the viewers have the map
-  /// What the open case plans; the open model may have an insertion through another hole.
+  /// The plan of the open case; the open model may have an insertion through another hole.
   struct Planned {
     Scenario scenario;
     std::vector<PlannedInsertion> insertions;
@@ -130,7 +130,7 @@ struct Session::Parts {
   void carry_out(const Request& request);
   void tick(double dt_s);
   void show_companion();
-  std::string companion_trouble;  ///< what the terminal was told about the companion last
+  std::string companion_trouble;  ///< the last sentence for the terminal about the companion
   void heed_room();
   [[nodiscard]] RoomReport look_after_room() const;
   void show_inside();
@@ -835,7 +835,7 @@ void Session::Parts::carry_out(const Request& request) {
       if (live && live->seeds().dropping() > 0) {
         live->seeds().call_off();
         const bool has_left_some = implant->is_preloaded() && !implant->seeds_of_current().empty();
-        if (request.kind == Kind::undo && !has_left_some) break;  // what was being dropped is back in the needle
+        if (request.kind == Kind::undo && !has_left_some) break;  // the dropped seed is back in the needle
       }
       if (request.kind == Kind::clear) implant->clear();
       if (request.kind == Kind::undo) {

@@ -121,7 +121,7 @@ std::string cure_for(const ScenarioKey& key) {
   return {};
 }
 
-/// What to add to the cure for a text in place of a number: "20cm" and "0,06" have the number in another notation.
+/// Addition to the cure for a text in place of a number: "20cm" and "0,06" have the number in another notation.
 std::string about_notation(const ScenarioValue& value, const ScenarioKey& key) {
   const bool number = key.type == Type::number || key.type == Type::integer;
   const bool begins_with_one = value.type == Type::text && value.text.find_first_of("0123456789") < 2;
@@ -130,7 +130,7 @@ std::string about_notation(const ScenarioValue& value, const ScenarioKey& key) {
                                                    : ", the number alone, without a unit";
 }
 
-/// What to add to the cure for a number out of range: the unit in which it probably is.
+/// Addition to the cure for a number out of range: the unit in which it probably is.
 std::string probable_unit(const ScenarioValue& value, const ScenarioKey& key) {
   for (const PlausibleRange& range : plausible_ranges()) {
     if (range.key != key.path) continue;

@@ -86,7 +86,7 @@ def check_rotation(pose):
 
 
 class Reception:
-    """What has come over a connection: the newest of each kind, and what was counted."""
+    """Everything that has come over a connection: the newest of each kind, and what was counted."""
 
     def __init__(self, client):
         self.client = client

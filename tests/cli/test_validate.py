@@ -52,7 +52,7 @@ class Validate(InFolder):
         for name in missed:
             self.assertIn(f'<a href="#{name}">', page)
         self.assertEqual(missed, [name for name in rows if name in not_to_trust()],
-                         "README.md, What not to trust yet: it names the rows that miss and no other")
+                         "README.md, Not to be trusted yet: it names the rows that miss and no other")
 
     def test_the_readme_names_rows_that_there_are_each_once(self):
         named = not_to_trust()

@@ -18,7 +18,7 @@ class ValidateAll(InFolder):
         judged = {row["id"]: row["pass"] for row in rows if row["pass"] is not None}
         self.assertGreater(len(judged), 30)
         self.assertEqual({name for name, passes in judged.items() if not passes}, set(not_to_trust()) & set(judged),
-                         "README.md, What not to trust yet: it names the rows that miss and no other")
+                         "README.md, Not to be trusted yet: it names the rows that miss and no other")
         skipped = [row["id"] for row in rows if row["skipped"]]
         if not skipped:  # rows that compare with shared data need it
             script = Path(__file__).resolve().parents[2] / "scripts/update_trust_page"

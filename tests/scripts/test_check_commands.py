@@ -34,6 +34,8 @@ elif words[0] == "serve":
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))
     print("Open http://127.0.0.1/", flush=True)
     time.sleep(60)
+elif words[0] not in ("bench", "help", "version"):
+    sys.exit(f"stylet: error: unknown command '{words[0]}'")
 """
 
 
@@ -109,6 +111,9 @@ class Commands(unittest.TestCase):
         self.accepted("# A\nCall `stylet copy\nFILE -o OUT` or `stylet COMMAND --help`.\n")
         self.refused("# A\nCall\n`stylet copy FILE --to OUT`.\n", "README.md:3: stylet copy has no option '--to'")
         self.refused("# A\nCall `stylet move FILE`.\n", "README.md:2: stylet has no command 'move'")
+
+    def test_a_command_that_the_help_does_not_list_is_one_if_the_program_takes_it(self):
+        self.accepted("# A\n`stylet version` and `stylet help COMMAND` print the version and the options.\n")
 
     def test_other_programs_are_not_run_but_scripts_they_name_exist(self):
         said = self.accepted(fenced("scripts/there\ncmake --install build"))

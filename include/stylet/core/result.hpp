@@ -17,8 +17,8 @@ enum class ErrorKind { input, failed };
 struct Error {
   ErrorKind kind = ErrorKind::input;
   std::string where;  ///< file and the place in it, e.g. "case.dcm, ROI 'Prostate', slice z = -35 mm"
-  std::string what;   ///< what is wrong, with the value found, and what was expected
-  std::string cure;   ///< what the user can do: one sentence in the imperative, without a full stop
+  std::string what;   ///< the fault, with the value found, and what was expected
+  std::string cure;   ///< advice to the user: one sentence in the imperative, without a full stop
 
   /// @return "where: what. cure" in one line
   [[nodiscard]] std::string message() const;

@@ -16,7 +16,7 @@ struct DoseGrid {
   std::string frame_of_reference;      ///< UID of the DICOM frame of reference; may be empty
   std::string plan_uid;                ///< UID of the plan whose dose it is (300C,0002); may be empty
   std::string type;                    ///< dose type (3004,0004), such as "PHYSICAL"; may be empty
-  std::string summation;               ///< what it is the dose of (3004,000A), such as "PLAN"; may be empty
+  std::string summation;               ///< the subject of the dose (3004,000A), such as "PLAN"; may be empty
   std::array<Index, 3> size{0, 0, 0};  ///< number of points along i, j, k
   Vec3 origin_mm = Vec3::Zero();       ///< [mm] LPS, point (0, 0, 0)
   Vec3 spacing_mm = Vec3::Ones();      ///< [mm] distance of neighbours along i, j, k, > 0

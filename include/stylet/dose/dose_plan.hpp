@@ -29,7 +29,7 @@ struct PlannedSource {
   std::string needle;         ///< hole of the template or name of the channel; may be empty
 };
 
-/// What a plan says about one kind of source.
+/// One kind of source, as a plan states it.
 struct SourceKind {
   std::string id;                   ///< name in the plan: the source's number (300A,0212), or its model; may be empty
   std::string source_model;         ///< name of a source model (known_sources()); empty: the plan names none
@@ -52,7 +52,7 @@ struct ChannelSays {
   bool shielded = false;      ///< whether it has shields (300A,02B0)
 };
 
-/// What a plan's file says besides its sources, for the rules of plan_rules.hpp.
+/// The statements of a plan's file besides its sources, for the rules of plan_rules.hpp.
 struct PlanSays {
   bool is_dicom = false;               ///< whether the file is a DICOM RTPLAN
   std::string type, technique;         ///< (300A,0202) and (300A,0200); may be empty
@@ -89,14 +89,14 @@ struct DosePlan {
   std::string source_id;                 ///< of the kind of source that isotope, half-life, … above describe
   std::vector<SourceKind> more_kinds;    ///< further kinds: PlannedSource::kind k ≥ 1 is more_kinds[k − 1]
   std::vector<PlannedSource> sources;    ///< at least one
-  PlanSays says;                         ///< what else the file says
+  PlanSays says;                         ///< other statements of the file
   std::vector<std::string> notes;        ///< sentences for the user: what the reader decided or left out
 };
 
 /// Number of kinds of source of a plan, at least 1.
 [[nodiscard]] inline std::size_t kind_count(const DosePlan& plan) { return 1 + plan.more_kinds.size(); }
 
-/// What a plan says about a kind of source. @param kind 0 … kind_count() − 1
+/// A kind of source, as the plan states it. @param kind 0 … kind_count() − 1
 [[nodiscard]] inline SourceKind source_kind(const DosePlan& plan, std::size_t kind) {
   if (kind > 0) return plan.more_kinds.at(kind - 1);
   return {plan.source_id,        plan.source_model,       plan.isotope,      plan.half_life_days,

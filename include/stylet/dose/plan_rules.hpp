@@ -14,8 +14,8 @@ namespace stylet {
 /// One rule. A plan that breaks it is refused where the dose would surely be wrong, and warned of otherwise.
 struct PlanRule {
   std::string name;     ///< short name, which stands in the message of a violation
-  std::string bound;    ///< what a plausible plan keeps
-  std::string verdict;  ///< what becomes of a plan that does not keep it: "refused", "warned of" or both with bounds
+  std::string bound;    ///< the bound that a plausible plan keeps
+  std::string verdict;  ///< the fate of a plan that does not keep it: "refused", "warned of" or both with bounds
   std::string reason;   ///< where the bound comes from
 };
 

@@ -41,7 +41,7 @@ struct StrengthAge {
 /// @param decay_days [d] from the date of the strengths to the implantation, as the dose was computed with
 StrengthAge strength_age(const DosePlan& plan, double half_life_days, double decay_days);
 
-/// What the user should know of it, as a sentence; empty where the plan has no date of the strengths.
+/// The age as a sentence for the user; empty where the plan has no date of the strengths.
 std::string strength_sentence(const StrengthAge& age);
 
 /// Whether the decay between the dates, which the dose leaves out or takes otherwise, changes it by more than 1 %.

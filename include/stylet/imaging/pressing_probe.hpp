@@ -33,7 +33,7 @@ class PressingProbe {
   PressingProbe(std::shared_ptr<const void> patient, const Locator& locator, PatientProbe probe)
       : patient_(std::move(patient)), locator_(&locator), probe_(std::move(probe)) {}
 
-  std::shared_ptr<const void> patient_;  ///< what the other members refer to
+  std::shared_ptr<const void> patient_;  ///< owner of the objects to which the other members refer
   const Locator* locator_;
   PatientProbe probe_;
 };

@@ -13,7 +13,7 @@
 
 namespace stylet {
 
-/// What happened to one needle of an implant.
+/// The history of one needle of an implant.
 struct NeedleHistory {
   std::string name;                    ///< as in NeedleLoad
   Vec3 entry_mm = Vec3::Zero();        ///< [mm] LPS, skin point on its line

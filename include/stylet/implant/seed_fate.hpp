@@ -8,7 +8,7 @@
 
 namespace stylet {
 
-/// What becomes of the seeds of one needle after they were dropped: a strand keeps its spacing along its own line,
+/// Settles the seeds of one needle after they were dropped: a strand keeps its spacing along its own line,
 /// which may be bent; each seed, or the whole strand, may jump along its track and may be lost.
 /// @param seeds of one needle, from its tip on
 /// @param needle number of the needle, which with SeedChoice::random starts the random numbers

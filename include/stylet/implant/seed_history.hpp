@@ -33,7 +33,7 @@ struct DwellAtPlanning {
   Vec3 tissue_mm = Vec3::Zero();  ///< [mm] LPS, the tissue that is there, by its place at rest
 };
 
-/// What became of one seed: where it was planned, dropped, and comes to rest. All places are of its centre, in LPS
+/// The history of one seed: where it was planned, dropped, and comes to rest. All places are of its centre, in LPS
 /// [mm].
 /// In a temporary implant it is a dwell position, which the delivery leaves nowhere: `dropped_mm` is its place in the
 /// room at the delivery, and `rest_mm` the tissue that is there, by its place at rest.

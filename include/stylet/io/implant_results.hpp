@@ -68,7 +68,7 @@ std::string seeds_csv(const ImplantOutcome& outcome);
 /// @param history the simulated implant, of which `found` is the comparison
 std::string found_csv(const ImplantHistory& history, const FoundImplant& found);
 
-/// What the match of the found seeds says, as sentences: which seeds have no match, which matches are ambiguous, the
+/// Sentences about the match of the found seeds: which seeds have no match, which matches are ambiguous, the
 /// common shift and whether it is more than chance, and how much the simulation explains.
 /// @param history the simulated implant, of which `found` is the comparison
 std::vector<std::string> found_sentences(const ImplantHistory& history, const FoundImplant& found);

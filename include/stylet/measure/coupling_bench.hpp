@@ -11,7 +11,7 @@
 
 namespace stylet::measure {
 
-/// What is varied in a study; everything else of the insertion stays the same.
+/// The quantity that is varied in a study; everything else of the insertion stays the same.
 enum class CouplingStudy { mesh, geometry, spacing, time_step };
 const char* to_string(CouplingStudy study);  ///< "mesh", "geometry", "spacing", "dt"
 

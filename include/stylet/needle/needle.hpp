@@ -16,7 +16,7 @@ struct PointLoad {
   Vec3 force = Vec3::Zero();  ///< [N] LPS; keeps its direction when the needle turns
 };
 
-/// What Needle::linearise() does when the tangent stiffness is not positive definite.
+/// The choice of Needle::linearise() when the tangent stiffness is not positive definite.
 enum class Indefinite {
   shift,    ///< adds stiffness until it is positive definite
   give_up,  ///< stops; for callers that then pass springs to linearise() and try again

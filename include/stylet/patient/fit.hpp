@@ -11,7 +11,7 @@
 
 namespace stylet {
 
-/// What follows from a finding about a patient.
+/// The consequence of a finding about a patient.
 enum class FitVerdict {
   note,    ///< the user should know it
   warn,    ///< something is probably wrong
@@ -21,7 +21,7 @@ enum class FitVerdict {
 /// A rule by which a patient is judged (docs/formats.md has the table with the reasons).
 struct FitRule {
   const char* name;
-  const char* bound;      ///< what is expected, in words
+  const char* bound;      ///< the expectation, in words
   FitVerdict if_guessed;  ///< for a gland that is a planning volume whose name does not say "prostate"
   FitVerdict if_named;    ///< for a gland that the file names
 };

@@ -14,7 +14,7 @@ namespace stylet {
 struct JudgedStructure {
   const Roi* roi = nullptr;               ///< the structure in the contour set
   StructureUse use;                       ///< the region that it becomes, or why it is left out
-  std::optional<StructureSlices> slices;  ///< what its contours mean; nothing if there is a fault
+  std::optional<StructureSlices> slices;  ///< the meaning of its contours; nothing if there is a fault
   std::optional<Error> fault;             ///< why its contours cannot be a structure; matters only if it is used
   std::optional<std::string> oddity;      ///< note for the user about contours that look odd (long_closing_side())
 

@@ -26,7 +26,7 @@ class Companion {
   [[nodiscard]] virtual std::unique_ptr<Device> device() = 0;
   /// Why the device gives no usable pose, in words.
   [[nodiscard]] virtual std::string why_no_pose() const = 0;
-  /// What went wrong with the connection, or what is received and not used, in one sentence for the terminal; empty:
+  /// Trouble with the connection, or what is received and not used, in one sentence for the terminal; empty:
   /// nothing. It stays until there is something newer.
   [[nodiscard]] virtual std::string trouble() const { return {}; }
 

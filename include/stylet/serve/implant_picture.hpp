@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-/// What viewers of a live session receive about an implant that is being carried out (docs/live_protocol.md).
+/// The message to viewers of a live session about an implant that is being carried out (docs/live_protocol.md).
 namespace stylet::serve {
 
 /// A seed of the plan.
@@ -56,7 +56,7 @@ struct ImplantScore {
   std::vector<JudgedGoal> goals{};  ///< empty until they are computed, some time after D90
 };
 
-/// What has been carried out so far.
+/// The part of the implant that has been carried out so far.
 struct LiveImplant {
   /// In the order in which they were dropped. The cause `aim` is where the hand held the needle; the causes of a seed
   /// add up to its error.

@@ -83,13 +83,13 @@ struct SessionStatus {
     std::string name;
     double seconds = 0.0;
     std::string problem;  ///< why nothing is recorded; empty: the session is recorded
-    std::string warning;  ///< what may soon stop the recording
+    std::string warning;  ///< a condition that may soon stop the recording
   } recording;
   struct Image {
     std::string shown = "none";  ///< the kind of picture that the pages get: "none", "transverse", "sagittal" or "xray"
     std::string problem;         ///< why it cannot be made; empty: it can
-    std::string stage;           ///< what is being prepared for it; empty: nothing
-    std::string probe_device = "page";  ///< what moves the probe: "page", or a companion's name
+    std::string stage;           ///< the part that is being prepared for it; empty: nothing
+    std::string probe_device = "page";  ///< mover of the probe: "page", or a companion's name
     std::string probe_problem;          ///< where the probe does not do what a companion's pose says; empty: it does
     bool operator==(const Image&) const = default;
   } image;

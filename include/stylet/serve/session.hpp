@@ -23,7 +23,7 @@ struct HandTarget;
 /// A case that has been opened.
 struct LoadedCase {
   std::shared_ptr<const Model> model;
-  std::vector<std::string> notes;  ///< what was left out, added or corrected when the model was made
+  std::vector<std::string> notes;  ///< things left out, added or corrected when the model was made
   /// A plan of seeds to carry out; null: the case has none. The model may have any needle.
   std::shared_ptr<const ImplantCase> implant{};
 };

@@ -8,7 +8,7 @@
 
 namespace stylet {
 
-/// What is plausible for a number of a scenario. The ranges of the table of keys say what is possible; a number outside
+/// Plausible range of a number of a scenario. The ranges of the table of keys say what is possible; a number outside
 /// of these narrower ones is usually in another unit. docs/scenario.md shows the table.
 struct PlausibleRange {
   std::string key;  ///< path of the key, as ScenarioKey::path

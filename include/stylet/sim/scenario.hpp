@@ -210,7 +210,7 @@ struct Scenario {
     double planning_to_delivery_s = 3600.0;  ///< temporary implants: from the images of the plan to the dose
     bool operator==(const Procedure&) const = default;
   } procedure;
-  /// What becomes of a seed beside the motion of the tissue.
+  /// The fate of a seed beside the motion of the tissue.
   struct Seed {
     bool stranded = false;
     double release_mm = 0.0;

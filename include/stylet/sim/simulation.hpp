@@ -83,7 +83,7 @@ class Simulation {
   void notice_turn(double advance_mm, bool in_tissue);
   [[nodiscard]] double base_depth_mm(const Pose& base) const;
 
-  /// What is known of a needle while it rests.
+  /// The state of a needle while it rests.
   struct Resting {
     Vec3 entry = Vec3::Zero();
     Vec3 direction = Vec3::UnitZ();

@@ -84,7 +84,7 @@ struct CoupledBalance::Progress {
   bool old_matrix = false;                                  ///< the last iteration used a tangent of an earlier shape
   bool old_matrix_failed = false;  ///< the last iteration used an old matrix and found no solution
   bool new_tangent = false;        ///< a tangent was made in this balance
-  bool steady = true;              ///< what solve() returns
+  bool steady = true;              ///< result of solve()
 
   /// Whether a new tangent is worth its cost. @param error over the tolerance @param iteration number of iterations so
   /// far

@@ -86,7 +86,7 @@ class NeedleBundle final : public Needle {
   VecX motion_;      ///< [mm] work space
   int prepared_count_ = 0;
   bool keeps_resting_ = false;
-  mutable VecX state_;  ///< what state() returns
+  mutable VecX state_;  ///< result of state()
 };
 
 }  // namespace stylet

@@ -11,7 +11,7 @@
 
 namespace stylet::detail {
 
-/// What a text of a patient record must be.
+/// The form that a text of a patient record must have.
 enum class RecordText { any, date, time, sex };
 
 /// An attribute that files of one patient share: read from the inputs and written into the results.

@@ -307,7 +307,7 @@ class RtplanReader {
     return known->second = plan_.more_kinds.size();
   }
 
-  /// What the file says about a channel; its weights are filled in later.
+  /// The file's statements about a channel; its weights are filled in later.
   static ChannelSays says_of(DcmItem& channel, const std::vector<ControlPoint>& points, const std::string& where) {
     ChannelSays says;
     says.where = where;

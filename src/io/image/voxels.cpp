@@ -84,7 +84,7 @@ bool varies_like_picture(const std::vector<std::uint16_t>& labels, std::size_t d
   return static_cast<double>(alike) < kAlikeInMask * static_cast<double>(pairs);
 }
 
-/// What the values of an image are besides labels.
+/// Values of an image that are no labels.
 struct Oddities {
   std::size_t not_numbers = 0;         ///< number of voxels that are NaN
   double negative = 0;                 ///< the only negative value, if the number of its voxels is not 0

@@ -29,7 +29,7 @@ struct Voxels {
   Vec3 origin = Vec3::Zero();             ///< [mm] LPS, centre of voxel (0,0,0)
   std::string origin_field = "origin";    ///< the format's name for the origin, for messages
   std::string spacing_field = "spacing";  ///< the format's name for the spacing, for messages
-  std::vector<std::string> notes;         ///< what the reader decided, for the user
+  std::vector<std::string> notes;         ///< decisions of the reader, for the user
 };
 
 /// Why these axes are not those of a regular grid, in words: one that has no length, or two that are not perpendicular.

@@ -136,7 +136,7 @@ Eigen::Quaterniond in_other_order(const Eigen::Quaterniond& q, bool real_part_fi
                          : Eigen::Quaterniond(q.x(), q.y(), q.z(), q.w());
 }
 
-/// What the orientations say of the way in, from the first sample to the one that is furthest from it.
+/// The way in by the orientations, from the first sample to the one that is furthest from it.
 struct WayIn {
   double off_axis_deg = 0.0;  ///< angle of the way to the needle's axis, towards the tip; 0 for a needle that is pushed
   double real_part = 0.0;     ///< mean magnitude of the real part; 1: hardly turned, 0: turned by 180°

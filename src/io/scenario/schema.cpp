@@ -50,7 +50,7 @@ constexpr std::array kTables{
               "it. Repeat the table for further needles."},
     TableText{"plan.goal[]", "#[[plan.goal]]", "A goal for the dose, instead of a file with plan.goals."},
     TableText{"procedure", "[procedure]", "How the needles of the plan go in and out."},
-    TableText{"seed", "[seed]", "What becomes of a seed, beside the motion of the tissue."},
+    TableText{"seed", "[seed]", "The fate of a seed, beside the motion of the tissue."},
     TableText{"oedema", "[oedema]", "Swelling of the gland after the implantation, for the dose."},
     TableText{"probe", "[probe]", "The ultrasound probe in the rectum: what it is and where its stepper holds it."},
     TableText{"ultrasound", "[ultrasound]", "The ultrasound scanner, for pictures."},

@@ -45,7 +45,7 @@ async function planFigure(name) {
 const notice = (text) => page.locator('.notice', { hasText: text }).first().waitFor();
 const dropped = () => planFigure('Seeds');
 
-/** What stylet info prints about the recording of a needle. */
+/** The text that stylet info prints about the recording of a needle. */
 function info(recordings, needle) {
   const name = readdirSync(recordings).filter((file) => file.endsWith(`-${needle}`)).sort()[0];
   const program = process.env.STYLET ?? path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../../../build/bin/stylet');

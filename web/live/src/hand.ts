@@ -11,7 +11,7 @@ const TAP_MS = 1000 / 60;                  // shortest duration of a motion by a
 const SEND_EVERY_MS = 1000 / 60;
 
 /**
- * What determines the target's depth. followed: the simulation, because nobody pushes. driven: this page, because the
+ * The source of the target's depth. followed: the simulation, because nobody pushes. driven: this page, because the
  * user pushes. stopping: the user has let go and the page waits until the needle stands still. Only the server knows
  * the depth at which it stops, because the frames that this page receives are some hundredths of a second old.
  */

@@ -14,7 +14,7 @@ interface Topics {
   event: Event;
   notice: Notice;
   plan: Plan | null; // the plan of seeds to follow; null: there is none
-  implant: Implant; // what has been carried out of it
+  implant: Implant; // the part of it that has been carried out
   seeds: Seeds;     // where the dropped seeds are now
   dose: Dose;       // the dose around the target
   image: LiveImage; // the newest ultrasound or X-ray picture

@@ -13,7 +13,7 @@
 
 namespace stylet::validate {
 
-/// What all rows share: the options, the folder of the shared data, and results that are too expensive to compute
+/// Common ground of all rows: the options, the folder of the shared data, and results that are too expensive to compute
 /// twice.
 class Context {
  public:

@@ -12,7 +12,7 @@
 /// Validation: compares the model with analysis, independent codes and published measurements.
 namespace stylet::validate {
 
-/// What a claim is checked against; rows of one group follow each other.
+/// The kind of evidence against which a claim is checked; rows of one group follow each other.
 enum class Group { analysis, other_code, measurements, independence };
 const char* to_string(Group group);  ///< "analysis", "independent code", …: the word in JSON
 const char* title(Group group);      ///< heading on the page

@@ -19,7 +19,7 @@ std::string figure_unit(const DoseGoal& goal);
 /// A number with the unit of a goal.
 std::string with_figure_unit(const std::string& value, const DoseGoal& goal);
 
-/// What a plan reaches, with its unit; a dash where there is nothing.
+/// The value that a plan reaches, with its unit; a dash where there is nothing.
 std::string reached_text(const JudgedGoal& judged);
 
 /// The verdict as word, sign and colour, each of which is sufficient by itself, as HTML.

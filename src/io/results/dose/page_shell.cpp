@@ -13,7 +13,8 @@ namespace {
 
 // The places where scripts put histograms and sections (web/report/src/dose/page.ts).
 constexpr const char* kDvhPlot =
-    "<div class=\"needs-script on-screen\"><div class=\"legend\" id=\"dvh-legend\"></div><div class=\"plot\" id=\"dvh-plot\">"
+    "<div class=\"needs-script on-screen\"><div class=\"legend\" id=\"dvh-legend\"></div><div class=\"plot\" "
+    "id=\"dvh-plot\">"
     "</div></div>";
 constexpr const char* kSectionPictures =
     "<div class=\"needs-script\"><div class=\"iso-key\" id=\"iso-key\"></div><div class=\"sections\" "

@@ -45,7 +45,7 @@ std::vector<CauseOfErrors> causes_that_moved(const ImplantHistory& history);
 /// A sentence about the causes that moved no seed; empty where each moved one.
 std::string causes_left_out(const ImplantHistory& history);
 
-/// What was planned, what was delivered, and why, in a few sentences: paragraphs, as HTML.
+/// The plan, its delivery and the causes of the difference, in a few sentences: paragraphs, as HTML.
 std::string implant_story(const ImplantOutcome& outcome);
 
 /// Whether the gland swells, so that the dose differs from that of the plan for this reason too.

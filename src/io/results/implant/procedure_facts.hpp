@@ -6,7 +6,7 @@
 
 #include <string>
 
-/// What a simulated implant takes for granted, as pairs of name and value.
+/// Assumptions of a simulated implant, as pairs of name and value.
 namespace stylet::results {
 
 /// Technique, speeds, pause, order and plug.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the clinician sees, in place of the 3D view: ultrasound or X-ray, with the controls of scanner, stepper and C-arm.
+// The clinician's view, in place of the 3D view: ultrasound or X-ray, with the controls of scanner, stepper and C-arm.
 import { button, element } from '../../../shared/dom';
 import { onRepaint, onRepaintEvery } from '../repaint';
 import type { Session } from '../session';

@@ -68,7 +68,7 @@ export function isFinished(implant: Implant | null): boolean {
   return implant !== null && implant.seeds.length > 0 && implant.seeds.length >= implant.planned_seeds;
 }
 
-/** What the hand has to do before the next seed: a sentence, and whether the needle is in place. */
+/** The hand's task before the next seed: a sentence, and whether the needle is in place. */
 export function whatToDo(plan: Plan, implant: Implant | null, depth: number): { text: string; inPlace: boolean } {
   const needle = currentNeedle(plan);
   if (!needle) return { text: 'This hole is not in the plan. Choose a needle below.', inPlace: false };
@@ -83,7 +83,7 @@ export function whatToDo(plan: Plan, implant: Implant | null, depth: number): { 
   return { text: `${which}: ${togo > 0 ? 'push in' : 'pull back'} ${Math.abs(togo).toFixed(1)} mm`, inPlace: false };
 }
 
-/** What the hand has to do with a needle that is drawn back over its train. `number` counts the seed that is left next. */
+/** The hand's task with a needle that is drawn back over its train. `number` counts the seed that is left next. */
 function whatToDoWithTrain(needle: PlanNeedle, number: number, seed: PlanSeed, implant: Implant | null, depth: number): { text: string; inPlace: boolean } {
   const from = implant?.train_from_mm ?? null;
   if (from !== null) {

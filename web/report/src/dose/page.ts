@@ -11,7 +11,7 @@ import { buildSection, type MoreMarks } from './section_picture';
 import type { DoseStage } from './stage';
 import { buildDoseViewer } from './viewer';
 
-/** What a page shows beside the dose. */
+/** Content of a page beside the dose. */
 export interface More {
   planned?: number[][];       // (structures × doses) histograms of a plan [%]
   found?: number[][];         // those of seeds that were found on images

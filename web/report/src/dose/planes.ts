@@ -9,7 +9,7 @@ export interface Plane {
   down: 0 | 1 | 2;    // axis along the picture's height
   up: boolean;        // whether `down` grows upwards in the picture
   ends: { left: string; right: string; top: string; bottom: string };
-  moves: string;      // what the slider moves along
+  moves: string;      // the direction of the slider
 }
 
 export const PLANES: Plane[] = [
