@@ -252,6 +252,10 @@ Result<> run_dose(const DoseArguments& arguments, Console& console) {
           fmt::format("The compared dose grid was moved by ({:g}, {:g}, {:g}) mm.", shift.x(), shift.y(), shift.z()));
     e->warnings.insert(e->warnings.end(), grid->notes.begin(), grid->notes.end());
   }
+  if (e->quantity.find("rate") != std::string::npos) {
+    e->assumptions.emplace_back(
+        "There is no dose.dcm, since DICOM has no unit of a dose rate; dose.nrrd has the rates [Gy/h].");
+  }
   e->computed_on = date_and_time();
   e->inputs = inputs_of(arguments);
   for (const std::string& warning : e->warnings) console.warn(warning);

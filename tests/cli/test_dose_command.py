@@ -93,6 +93,7 @@ class Dose(InFolder):
         self.assertAlmostEqual(at("--days", 59.4) / total, 0.5, places=12)
         self.assertAlmostEqual(at("--decay-days", 59.4) / total, 0.5, places=12)
         self.assertAlmostEqual(at("--quantity", "rate") * 59.4 * 24 / math.log(2) / total, 1, places=12)
+        self.assertFalse((self.folder / "out/dose.dcm").exists(), "DICOM has no unit of a dose rate")
         one = at("--formalism", "point", "--phi-an", 0.95)
         two = at("--formalism", "point", "--phi-an", 0.475 + 0.475 / 2)
         self.assertAlmostEqual(two / one, 0.75, places=12)

@@ -37,6 +37,9 @@ Result<std::string> bytes_of(const std::string& name, const fs::path& beside,
   return bytes;
 }
 
+/// DICOM's units of dose know no rate.
+bool has_dicom_dose(const DoseEvaluation& e) { return e.quantity.find("rate") == std::string::npos; }
+
 /// plan.dcm, dose.dcm and dose.nrrd. Both DICOM files have one patient, study and frame of reference.
 Result<std::vector<results::File>> files_of_grid_and_plan(const DoseEvaluation& e, const fs::path& beside) {
   const DoseGrid& grid = e.grid;
@@ -50,6 +53,7 @@ Result<std::vector<results::File>> files_of_grid_and_plan(const DoseEvaluation& 
       {"dose.nrrd", [&](const fs::path& path) { return write_dose_nrrd(grid, path); }}};
   std::vector<results::File> files;
   for (const auto& [name, write] : writers) {
+    if (name == "dose.dcm" && !has_dicom_dose(e)) continue;
     auto bytes = bytes_of(name, beside, write);
     if (!bytes) return bytes.error();
     files.push_back({name, std::move(*bytes)});
@@ -73,6 +77,7 @@ Result<> write_all_results(const DoseEvaluation& evaluation, const fs::path& fol
   files->push_back({"report.html", std::move(*page)});
   files->push_back({"dvh.csv", dvh_csv(evaluation)});
   files->push_back({"dose.json", dose_json(evaluation)});
+  if (!has_dicom_dose(evaluation)) fs::remove(place / "dose.dcm", code);  // that of an earlier run
   auto done = results::write_folder(*files, place);
   if (done) report(progress, "report", 1.0);
   return done;
