@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs the built program as a user does. The environment variable STYLET names it."""
+import html
 import json
 import os
 import re
@@ -65,3 +66,12 @@ class InFolder(unittest.TestCase):
             self.assertIn(text, done.stderr)
         self.assertEqual(files_under(self.folder), before)
         return done
+
+
+def as_on_terminal(text):
+    """A text of a page as the terminal says it, where minus signs are hyphens and all spaces are plain."""
+    return html.unescape(text).replace("\xa0", " ").replace("−", "-")
+
+
+def page_text(path):
+    return as_on_terminal(Path(path).read_text(encoding="utf-8"))

@@ -3,7 +3,6 @@
 """stylet dose with plans that contradict themselves, made from plans of our own: each is refused, or warned of on the
 terminal, in dose.json and on the page. With --table the cases are printed as in docs/reference/plan_rules.md."""
 import copy
-import html
 import json
 import math
 import subprocess
@@ -13,7 +12,7 @@ from pathlib import Path
 if "--table" not in sys.argv:
     import unittest
 
-    from program import InFolder, run
+    from program import InFolder, page_text, run
 
 
 def ball(radius, name="Prostate", at=(0, 0, 0)):
@@ -240,7 +239,7 @@ class ContradictoryPlans(InFolder):
                 return
             self.assertEqual(done.returncode, 0, done.stderr)
             warnings = json.loads((self.folder / out / "dose.json").read_text())["warnings"]
-            page = html.unescape((self.folder / out / "report.html").read_text()).replace("\xa0", " ")
+            page = page_text(self.folder / out / "report.html")
             self.assertTrue(any(says.lower() in w.lower() for w in warnings), f"silent; warnings are {warnings}")
             for warning in warnings:
                 self.assertIn(warning, done.stderr)

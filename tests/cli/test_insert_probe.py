@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """stylet insert with an ultrasound probe in the rectum: what terminal, summary and report say about it."""
-import html
 import json
 import math
 import unittest
 
 from insert_case import PHANTOM, SMALL
-from program import InFolder
+from program import InFolder, page_text
 
 PROBE = ("--set", 'probe.kind="biplane"', "--set", "probe.lift_mm=8", "--set", "probe.depth_mm=20")
 
@@ -17,7 +16,7 @@ class ProbeInTheRectum(InFolder):
         (self.folder / "probe.toml").write_text(PHANTOM)
         said = self.succeed("insert", "probe.toml", "-o", "out", *SMALL, *settings)
         out = self.folder / "out"
-        return (said.stdout, json.loads((out / "summary.json").read_text()), html.unescape((out / "report.html").read_text()).replace("\xa0", " "))
+        return (said.stdout, json.loads((out / "summary.json").read_text()), page_text(out / "report.html"))
 
     def test_terminal_summary_and_report_say_where_it_is_and_what_it_does(self):
         text, summary, page = self.insert(*PROBE)

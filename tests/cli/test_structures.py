@@ -2,14 +2,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Structures as used in clinics: the region that each becomes, those that are left out, and that every output reports
 this."""
-import html
 import json
 import math
 import unittest
 
 import samples
 from insert_case import BLOCK, SMALL, FAST, block_mesh
-from program import InFolder
+from program import InFolder, as_on_terminal
 
 INSERTION = '[[insertion]]\nhole = "d4"\nspeed_mm_per_s = 80\nretract = false\ndwell_s = 0\n'
 
@@ -48,7 +47,7 @@ class Structures(InFolder):
         self.assertEqual(said, summary["warnings"])
         report = (self.folder / "out/report.html").read_text()
         listed = report.split('<ul class="warnings">')[1].split("</ul>")[0] if '<ul class="warnings">' in report else ""
-        self.assertEqual([html.unescape(item) for item in listed.replace("</li>", "").split("<li>")[1:]], said)
+        self.assertEqual([as_on_terminal(item) for item in listed.replace("</li>", "").split("<li>")[1:]], said)
         self.assertEqual(self.json_of("info", "out/run.h5")["warnings"], said)
         return said
 
