@@ -8,6 +8,10 @@
 #include <igtlStringMessage.h>
 #include <igtl_util.h>
 
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <random>
 
 using namespace stylet;
@@ -269,4 +273,28 @@ TEST(MessageReader, another_version_of_the_header_is_refused_with_the_versions_t
   const std::string why = read(bytes).result.error().message();
   EXPECT_NE(why.find("a header of version 3, which is not read"), std::string::npos) << why;
   EXPECT_NE(why.find("header version 1 or 2"), std::string::npos) << why;
+}
+
+TEST(MessageReader, messages_of_other_programs_are_taken_or_refused_with_the_reason) {
+  const char* given = std::getenv("STYLET_SHARED_DATA");
+  const std::filesystem::path folder =
+      std::filesystem::path(given != nullptr ? given : STYLET_SHARED_DATA_DEFAULT) / "found3";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no messages at " << folder << " (set STYLET_SHARED_DATA)";
+  const auto bytes_of = [&](const char* name) {
+    std::ifstream file(folder / name, std::ios::binary);
+    return Raw(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+  };
+  const Read position = read(bytes_of("k16_position.bin"));
+  ASSERT_TRUE(position.result) << position.result.error().message();
+  EXPECT_EQ(position.messages.at(0).kind, Kind::pose);
+  const Read unsealed = read(bytes_of("k16_transform_v1_crc0.bin"));
+  ASSERT_FALSE(unsealed.result);
+  EXPECT_NE(unsealed.result.error().message().find("checksum"), std::string::npos);
+  const Read taken = read(bytes_of("k16_transform_v1_crc0.bin"), 1 << 20, MessageReader({.checksums = false}));
+  ASSERT_TRUE(taken.result) << taken.result.error().message();
+  EXPECT_EQ(taken.messages.at(0).kind, Kind::pose);
+  const Read newer = read(bytes_of("k16_transform_header_v3.bin"));
+  ASSERT_FALSE(newer.result);
+  EXPECT_NE(newer.result.error().message().find("3"), std::string::npos) << newer.result.error().message();
+  EXPECT_EQ(newer.result.error().message().find("1 to 3"), std::string::npos) << newer.result.error().message();
 }
