@@ -68,9 +68,11 @@ double enclosed(const results::StructureSurface& surface) {
 
 TEST(DoseJson, has_the_documented_keys_in_their_order) {
   const auto json = nlohmann::ordered_json::parse(dose_json(implant()));
-  EXPECT_EQ(keys_of(json), (std::vector<std::string>{"seeds", "source", "sources", "formalism", "prescription_Gy",
-                                                     "quantity", "implant", "patient", "strength", "dvh", "goals",
-                                                     "points", "compare", "seed_list", "assumptions", "warnings"}));
+  EXPECT_EQ(keys_of(json),
+            (std::vector<std::string>{"seeds",    "source",  "sources",   "formalism",   "prescription_Gy",
+                                      "quantity", "implant", "patient",   "strength",    "computed_on",
+                                      "program",  "inputs",  "dvh",       "left_out",    "goals",
+                                      "points",   "compare", "seed_list", "assumptions", "warnings"}));
   EXPECT_EQ(keys_of(json["dvh"][0]),
             (std::vector<std::string>{"structure", "region", "type", "volume_cc", "D90_Gy", "D30_Gy", "D10_Gy", "D5_Gy",
                                       "D2cc_Gy", "D1cc_Gy", "D01cc_Gy", "V100_percent", "V150_percent", "V200_percent",
@@ -78,7 +80,8 @@ TEST(DoseJson, has_the_documented_keys_in_their_order) {
   EXPECT_EQ(keys_of(json["goals"][0]),
             (std::vector<std::string>{"structure", "metric", "bound", "value", "met", "citation"}));
   EXPECT_EQ(keys_of(json["points"][0]), (std::vector<std::string>{"x_mm", "y_mm", "z_mm", "dose_Gy"}));
-  EXPECT_EQ(keys_of(json["compare"]), (std::vector<std::string>{"median_ratio", "p1", "p99", "points", "file"}));
+  EXPECT_EQ(keys_of(json["compare"]),
+            (std::vector<std::string>{"median_ratio", "p1", "p99", "points", "file", "gamma"}));
   EXPECT_EQ(keys_of(json["seed_list"][0]),
             (std::vector<std::string>{"position_mm", "axis", "strength_U", "needle", "dwell_s"}));
 }
