@@ -138,7 +138,12 @@ test('the picture follows the needle, and a frozen one does not', async () => {
   const canvas = page.locator('#image canvas:visible');
   await page.getByRole('button', { name: 'True position' }).click();
   await page.mouse.move(5, 5);
-  const frozen = await canvas.screenshot();
+  let frozen = await canvas.screenshot();
+  await until('marks that are drawn', () => canvas.screenshot(), (now) => {
+    const same = now.equals(frozen);
+    frozen = now;
+    return same;
+  });
   for (let k = 0; k < 3; k++) await page.keyboard.press('PageDown');
   await untilReadout(page, 'Depth', (depth) => depth < 47.1);
   assert.deepEqual(await canvas.screenshot(), frozen);
