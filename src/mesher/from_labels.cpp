@@ -106,8 +106,8 @@ SliceFields fields_of(const LabelImage& image, const Slices& s, Inside&& inside)
   return f;
 }
 
-/// What the user should know about a region of plates one slice thick, of which a mesh keeps little; empty if fewer
-/// than half of its slices are such plates.
+/// A note for the user about a region of plates one slice thick, of which a mesh keeps little; empty if fewer than half
+/// of its slices are such plates.
 std::string plates_note(const std::string& name, const SliceFields& f) {
   const std::size_t count = f.fields.size();
   const auto filled = [&](std::size_t k) { return k < count && !f.fields[k].empty(); };

@@ -5,7 +5,8 @@
 
 #include <string>
 
-/// What makes a page a record: whose plan it is, when and from which files it was computed, and who has checked it.
+/// The parts of a page that make it a record: patient and plan, time and files of the computation, line for a
+/// signature.
 namespace stylet::results {
 
 /// The name of a plan: its label, or else the name of its file.

@@ -123,10 +123,8 @@ std::string gamma_text(const GammaRates& gamma, double prescription_Gy) {
   const GammaCriteria& by = gamma.criteria;
   return fmt::format(
       "<h4>Gamma index, {:g} % and {:g} mm</h4><p>{} % of the points pass with {:g} % of the dose at the point "
-      "(local), "
-      "{} % with {:g} % of {:g} Gy, {} (global): {} of the points above, those with at least {:g} % of {:g} Gy. The "
-      "file "
-      "is the reference (Low et al., Med Phys 25:656, 1998). The computed dose is taken from the formula at steps of "
+      "(local), {} % with {:g} % of {:g} Gy, {} (global): {} of the points above, those with at least {:g} % of "
+      "{:g} Gy. The file is the reference (Low et al., Med Phys 25:656, 1998). The dose is computed anew at steps of "
       "{:g} mm along 100 directions, linearly in between.</p>",
       by.dose_percent, by.distance_mm, fixed(gamma.local_percent, 1), by.dose_percent, fixed(gamma.global_percent, 1),
       by.dose_percent, gamma.global_Gy,
