@@ -11,8 +11,8 @@
 #include "stylet/io/model_file.hpp"
 #include "stylet/io/scenario_io.hpp"
 #include "stylet/patient/insert.hpp"
-#include "stylet/sim/cutting_lag.hpp"
 #include "stylet/sim/hole_map.hpp"
+#include "stylet/sim/tenting.hpp"
 
 #include <fmt/format.h>
 

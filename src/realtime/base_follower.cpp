@@ -9,21 +9,6 @@ namespace stylet {
 
 namespace {
 
-/// Share by which S approaches the stiffness of a softer body per step. It decreases from 1000 N/mm of bone to nothing
-/// within 40 steps, but is kept while friction alternates between sticking and sliding.
-constexpr double kShrink = 0.2;
-/// [mm] Smaller motions are ignored, since they give no information about stiffness.
-constexpr double kStill_mm = 1e-9;
-/// If a body is stiffer than S by more than this factor (at 2 the step would become unstable), S takes its stiffness in
-/// all directions.
-constexpr double kSurprise = 1.5;
-/// A motion that changes by less than this share is steady.
-constexpr double kUneven = 0.02;
-/// Stiffness below this share of the coupling's is negligible.
-constexpr double kNegligible = 1e-9;
-/// [N/mm] Upper bound of S; a body of this stiffness does not move.
-constexpr double kStiffest = 1e6;
-
 Vec3 limited(const Vec3& v, double most) {
   const double length = v.stableNorm();
   return length > most ? Vec3(v * (most / length)) : v;
@@ -41,7 +26,7 @@ BaseFollower::BaseFollower(const Limits& limits, const VirtualCoupling& coupling
 
 void BaseFollower::start(const Pose& base) {
   base_ = base;
-  S_.setZero();
+  seen_.reset();
   force_.setZero();
   hold();
 }
@@ -49,7 +34,6 @@ void BaseFollower::start(const Pose& base) {
 void BaseFollower::hold() {
   twist_ = {};
   moved_.setZero();
-  continued_.setZero();
   first_ = true;
 }
 
@@ -57,37 +41,6 @@ BaseFollower::Vec6 BaseFollower::offset(const Pose& device) const {
   Vec6 e;
   e << device.origin - base_.origin, lever_ * rotation_between(base_.rotation, device.rotation);
   return e;
-}
-
-/// If motion s and change of force y show a much stiffer body than S, sets S to that stiffness in all directions.
-/// @return whether it did
-bool BaseFollower::stiffen(const Vec6& s, const Vec6& y) {
-  const double sy = s.dot(y);
-  if (sy <= std::max(kSurprise * s.dot(S_ * s), kNegligible * K_[0] * s.squaredNorm())) return false;
-  S_ = std::min(y.squaredNorm() / sy, kStiffest) * Mat6::Identity();
-  return true;
-}
-
-void BaseFollower::learn(const Vec6& y) {
-  const Vec6 ds = moved_ - moved_before_;
-  const Vec6 dy = y - change_;
-  change_ = y;
-  continued_.setZero();
-  if (moved_.norm() < kStill_mm) return;
-  // While the body slides, the total motion shows a low stiffness, but differences between steps show the real one.
-  const bool stiffer = stiffen(moved_, y) || (ds.norm() > kUneven * moved_.norm() && stiffen(ds, dy));
-  // Work below this is negligible against the coupling; without the limit a shrinking S would lead to division by zero.
-  const double nothing = kNegligible * K_[0] * moved_.squaredNorm();
-  const double sy = moved_.dot(y);
-  const Vec6 Ss = S_ * moved_;
-  const double sSs = moved_.dot(Ss);
-  const double sliding = sSs > nothing ? std::clamp(1.0 - sy / sSs, 0.0, 1.0) : 0.0;
-  if (!stiffer) {
-    const double share = sy > sSs ? 1.0 : kShrink;
-    if (sy > nothing) S_.noalias() += share * std::min(1.0 / sy, kStiffest / y.squaredNorm()) * y * y.transpose();
-    if (sSs > nothing) S_.noalias() -= share / sSs * Ss * Ss.transpose();
-  }
-  continued_ = sliding * moved_;
 }
 
 void BaseFollower::move(const Vec6& by, double dt) {
@@ -109,20 +62,19 @@ const Pose& BaseFollower::follow(const Pose& device, const Wrench& hand, double 
   if (hand.finite()) force << hand.force, hand.torque / lever_;
   if (first_) {
     before_ = e;  // assumes that the handle was at rest
-    change_.setZero();
+    seen_.begin();
     first_ = false;
   } else {
-    learn(force - force_);
+    seen_.learn(moved_, force - force_, K_[0]);
   }
   force_ = force;
   const Vec6 damping = B_ / dt;
-  Mat6 stiffness = S_;
+  SeenStiffness::Mat6 stiffness = seen_.S();
   stiffness.diagonal() += K_ + damping;
   const Vec6 unbalanced = K_.cwiseProduct(e) + damping.cwiseProduct(e - before_) - force;
-  Vec6 by = stiffness.ldlt().solve(unbalanced + S_ * continued_);
-  moved_before_ = moved_;
+  Vec6 by = stiffness.ldlt().solve(unbalanced + seen_.S() * seen_.sliding());
   if (!by.allFinite()) {  // the forces were too large
-    S_.setZero();
+    seen_.reset();
     by.setZero();
   }
   move(by, dt);

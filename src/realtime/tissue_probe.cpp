@@ -42,7 +42,7 @@ std::uint32_t TissueProbe::watch(std::span<const Vec3> points) {
 
 /// Notes where the seeds of the train are.
 void TissueProbe::begin_train(const Simulation& simulation) {
-  const Order& order = order_.value();
+  const TissueOrder& order = order_.value();
   const Step& step = simulation.last_step();
   const Needle& needle = simulation.insertion().needle();
   const double length = needle.length();
@@ -108,7 +108,7 @@ void TissueProbe::look(Simulation& simulation) {
 
 void TissueProbe::serve(Simulation& simulation) noexcept {
   order_.fetch();
-  const Order& order = order_.value();
+  const TissueOrder& order = order_.value();
   bool is_new = false;
   if (order.version != now_.version) {
     now_.version = order.version;

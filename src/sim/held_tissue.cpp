@@ -23,17 +23,13 @@ Result<HeldTissue> hold_tissue(const Scenario& scenario, TetMesh mesh, const std
       directions.push_back(planned->direction);
     }
   }
-  const auto in_scenario = [&](Error error) {
-    error.where = where + ", " + error.where;
-    return error;
-  };
   const auto supports = find_supports(mesh, *topology, scenario.fixed, held.target, entries, directions);
-  if (!supports) return in_scenario(supports.error());
+  if (!supports) return within(where, supports.error());
   report(progress, "factorising the tissue", 0.0);
   const Element element = element_of(scenario, mesh.node_count());
   std::vector<Material> materials = materials_of(tissue_parameters(scenario, mesh));
   auto tissue = Tissue::build(std::move(mesh), std::move(materials), supports->nodes, progress, element);
-  if (!tissue) return in_scenario(tissue.error());
+  if (!tissue) return within(where, tissue.error());
   held.tissue = std::make_shared<const Tissue>(std::move(*tissue));
   held.topology = std::move(topology);
   held.locator = std::make_shared<const Locator>(held.tissue->mesh(), *held.topology);

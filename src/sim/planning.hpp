@@ -12,6 +12,12 @@ inline constexpr double kNeedleOutside_mm = 5.0;  ///< length of the needle that
 /// Direction of a needle through a hole of the template: to superior.
 inline const Vec3 kThroughTemplate = Vec3::UnitZ();
 
+/// The error with the scenario's name in front of its place.
+inline Error within(const std::string& where, Error error) {
+  error.where = where + ", " + error.where;
+  return error;
+}
+
 /// Numbers of the regions that form the target: the gland, or else a planning volume, or else all unnamed labels.
 std::vector<int> find_target(const TetMesh& mesh);
 

@@ -150,7 +150,7 @@ RunInfo Model::info(std::size_t insertion) const {
   if (coupling.solver != CouplingSettings::Solver::coupled) info.method += ", " + word(coupling.solver);
   info.needle_diameter_mm = scenario_.needle.diameter_mm;
   info.needle_length_mm = scenario_.needle.length_mm;
-  info.target_regions = target_;
+  info.target_regions = regions_.target;
   info.supports = supports_.description;
   if (!staying().empty()) {
     info.supports.push_back(
@@ -164,9 +164,9 @@ RunInfo Model::info(std::size_t insertion) const {
     info.direction = insertions()[insertion].direction;
   }
   for (std::size_t r = 0; r < mesh().regions.size(); ++r)
-    add_tissue(info.parameters, mesh().regions[r], scenario_.tissue_model.preset, tissue_parameters_[r],
-               laws_[r].rigid);
-  info.parameters.push_back({"tissue.element", to_string(tissue_->element()), "",
+    add_tissue(info.parameters, mesh().regions[r], scenario_.tissue_model.preset, regions_.parameters[r],
+               regions_.laws[r].rigid);
+  info.parameters.push_back({"tissue.element", to_string(built_.tissue->element()), "",
                              scenario_.tissue_model.element == ElementChoice::automatic
                                  ? "depends on coupling.method: linear tetrahedra if the method needs them or for "
                                    "comparison, else an element without locking"

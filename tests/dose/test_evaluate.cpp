@@ -359,5 +359,15 @@ TEST(VolumeSamples, of_a_mesh_and_of_a_mask_have_the_volume_and_the_centre_of_th
   EXPECT_FALSE(sample_structure(image, 7, 0.5).ok());
 }
 
+TEST(DoseGoal, is_met_at_its_bound_and_on_one_side_of_it) {
+  for (const char* bound : {">=90", "> 90", "<=90", "<90"}) {
+    const auto goal = parse_goal({"prostate", "D90_percent", bound, ""}, "here");
+    ASSERT_TRUE(goal) << bound;
+    EXPECT_TRUE(meets(*goal, 90.0)) << bound;
+    EXPECT_EQ(meets(*goal, std::nextafter(90.0, 100.0)), bound[0] == '>') << bound;
+    EXPECT_EQ(meets(*goal, std::nextafter(90.0, 0.0)), bound[0] == '<') << bound;
+  }
+}
+
 }  // namespace
 }  // namespace stylet

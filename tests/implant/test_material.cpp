@@ -51,6 +51,37 @@ TEST(MaterialAt, is_unknown_where_the_displacement_is_unknown) {
   EXPECT_FALSE(material_at(Vec3::Zero(), [](const Vec3&) -> std::optional<Displacement> { return std::nullopt; }));
 }
 
+TEST(TissueOfCapsule, goes_back_with_the_tissue_by_its_displacement) {
+  // A random linear field, whose material points are known, a part of which lasts.
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> number(-1.0, 1.0);
+  for (int k = 0; k < 50; ++k) {
+    Mat3 gradient;
+    for (int i = 0; i < 9; ++i) gradient(i / 3, i % 3) = number(random);
+    gradient *= 0.3 / gradient.norm();
+    const Vec3 moved(3 * number(random), 3 * number(random), 3 * number(random));
+    const Vec3 rest(10 * number(random), 10 * number(random), 10 * number(random));
+    const Vec3 axis = Vec3(number(random), number(random), 1.0).normalized();
+    const Mat3 F = Mat3::Identity() + gradient;
+    const TissueAt tissue = tissue_of_capsule(F * rest + moved, axis, 4.5, [&](const Vec3& x) {
+      return Displacement{gradient * x + moved, 0.25 * moved};
+    });
+    EXPECT_TRUE(tissue.is_known);
+    EXPECT_LT((tissue.rest_mm - rest).norm(), 1e-6);
+    EXPECT_EQ(tissue.lasting_mm, 0.25 * moved);
+    EXPECT_LT((tissue.axis - (F.inverse() * axis).normalized()).norm(), 1e-6);
+  }
+}
+
+TEST(TissueOfCapsule, stays_where_it_is_in_tissue_whose_displacement_is_unknown) {
+  const Vec3 centre(1, 2, 3);
+  const TissueAt tissue = tissue_of_capsule(centre, Vec3::UnitZ(), 4.5,
+                                            [](const Vec3&) -> std::optional<Displacement> { return std::nullopt; });
+  EXPECT_FALSE(tissue.is_known);
+  EXPECT_EQ(tissue.rest_mm, centre);
+  EXPECT_EQ(tissue.axis, Vec3::UnitZ());
+}
+
 /// A simulation whose needle is in the gland.
 Simulation inserted(double depth_mm) {
   Scenario scenario = test::box_scenario();

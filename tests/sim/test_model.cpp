@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "box_patient.hpp"
-#include "stylet/sim/cutting_lag.hpp"
+#include "stylet/sim/tenting.hpp"
 
 #include <algorithm>
 #include <cmath>

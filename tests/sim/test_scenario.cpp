@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/sim/model.hpp"
 #include "stylet/sim/scenario.hpp"
+#include "stylet/sim/tenting.hpp"
 
 #include <gtest/gtest.h>
 

@@ -37,7 +37,8 @@ struct GoalText {
   std::string structure, metric, bound, citation;
 };
 
-/// Parses a goal. Errors: no structure; a metric that parse_metric() refuses; a bound that is not > or <, perhaps with
+/// Parses a goal. The bound itself meets the goal, with "=" or without. Errors: no structure; a metric that
+/// parse_metric() refuses; a bound that is not > or <, perhaps with
 /// =, and a number. @param where place of the goal for the message
 Result<DoseGoal> parse_goal(const GoalText& text, const std::string& where);
 
@@ -46,7 +47,7 @@ Result<DoseGoal> parse_goal(const GoalText& text, const std::string& where);
 /// @param prescription_Gy prescribed dose [Gy]; 0: none is known
 [[nodiscard]] std::optional<double> figure_of(const DoseMetric& metric, const DoseVolume& dvh, double prescription_Gy);
 
-/// Whether a value keeps the bound of a goal.
+/// Whether a value keeps the bound of a goal; the bound itself does.
 [[nodiscard]] bool meets(const DoseGoal& goal, double value);
 
 /// The program's own goals for permanent prostate implants (American Brachytherapy Society, GEC-ESTRO/ACROP).

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "stylet/realtime/seen_stiffness.hpp"
 #include "stylet/realtime/virtual_coupling.hpp"
 
 namespace stylet {
@@ -53,12 +54,9 @@ class BaseFollower {
   [[nodiscard]] const Twist& twist() const { return twist_; }
 
  private:
-  using Vec6 = Eigen::Matrix<double, 6, 1>;
-  using Mat6 = Eigen::Matrix<double, 6, 6>;
+  using Vec6 = SeenStiffness::Vec6;
 
   [[nodiscard]] Vec6 offset(const Pose& device) const;
-  bool stiffen(const Vec6& s, const Vec6& y);
-  void learn(const Vec6& y);
   void move(const Vec6& by, double dt);
 
   // In these vectors and matrices, rotations are multiplied by the lever to be lengths, torques divided by it to be
@@ -68,16 +66,13 @@ class BaseFollower {
   double lever_ = 1.0;     ///< [mm]
   Vec6 K_ = Vec6::Zero();  ///< [N/mm] diagonal
   Vec6 B_ = Vec6::Zero();  ///< [N s/mm] diagonal
-  Mat6 S_ = Mat6::Zero();  ///< [N/mm] identified stiffness of needle and tissue at the base
   Pose base_;
   Twist twist_;
-  Vec6 before_ = Vec6::Zero();        ///< offset after the last step
-  Vec6 moved_ = Vec6::Zero();         ///< s of the last step
-  Vec6 force_ = Vec6::Zero();         ///< F before the last step
-  Vec6 moved_before_ = Vec6::Zero();  ///< s of the step before the last one
-  Vec6 change_ = Vec6::Zero();        ///< y of the last step
-  Vec6 continued_ = Vec6::Zero();     ///< φ s, the expected sliding
-  bool first_ = true;                 ///< no step since start() or hold()
+  Vec6 before_ = Vec6::Zero();  ///< offset after the last step
+  Vec6 moved_ = Vec6::Zero();   ///< s of the last step
+  Vec6 force_ = Vec6::Zero();   ///< F before the last step
+  SeenStiffness seen_;
+  bool first_ = true;  ///< no step since start() or hold()
 };
 
 }  // namespace stylet

@@ -2,30 +2,15 @@
 #pragma once
 
 #include "stylet/realtime/latest_value.hpp"
-#include "stylet/realtime/wrench.hpp"
+#include "stylet/realtime/tissue_messages.hpp"
 #include "stylet/sim/material_search.hpp"
 #include "stylet/sim/simulation.hpp"
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
 
 namespace stylet {
-
-/// A seed that the needle left while the loop ran. All places are of its centre, in LPS [mm].
-struct ProbedDrop {
-  bool is_done = false;        ///< the other fields hold
-  bool tip_in_tissue = false;  ///< false: the tip was in air, or out at the other side; then nothing was dropped
-  bool found = false;          ///< the point of the tissue was found
-  Triple place{};              ///< where the seed was left, in the room
-  Triple straight{};           ///< where a rigid straight needle on the same base would have left it
-  Triple axis{};               ///< unit vector of the needle at the seed
-  Triple rest{};               ///< the point of the tissue there, undeformed; `place` if it was not found
-  Triple lasting{};            ///< part of that point's displacement to which the tissue has crept
-  double base_depth_mm = 0.0;  ///< of the step in which the seed was left
-  double time_s = 0.0;         ///< of that step
-};
 
 /// Asks a running real-time loop about points of the tissue: at which point the needle leaves a seed, and where points
 /// are now (Insertion::displacement_at()). The loop answers after its steps, a few displacements at a time, so that no
@@ -38,19 +23,10 @@ struct ProbedDrop {
 /// needle that moves at 20 mm/s moves by at most 0.2 mm; under a needle at rest the search is exact to 0.005 mm.
 class TissueProbe {
  public:
-  static constexpr std::size_t kPoints = 32;  ///< largest number of watched points
-  static constexpr std::size_t kTrain = 24;   ///< largest number of seeds in a train
+  static constexpr std::size_t kPoints = kWatchedPoints;
+  static constexpr std::size_t kTrain = kTrainSeeds;
 
-  struct Answer {
-    std::uint32_t order = 0;   ///< number of the order that `drops` belong to; 0: nothing was ordered
-    double began_at_mm = 0.0;  ///< Step::base_depth_mm after which the order was begun
-    std::size_t drop_count = 0;
-    std::array<ProbedDrop, kTrain> drops{};  ///< in the order of the train
-    std::uint32_t version = 0;               ///< of the watched points (watch())
-    std::size_t count = 0;                   ///< number of watched points
-    std::array<Triple, kPoints> now{};       ///< [mm] LPS, their present places
-    std::array<bool, kPoints> is_known{};    ///< the place was computed
-  };
+  using Answer = TissueAnswer;
 
   /// Orders a drop: the search begins after the next step. One reading thread makes this and the next calls.
   /// @param beyond_tip_mm distance of the seed's centre in front of the tip @return number of the order
@@ -71,15 +47,6 @@ class TissueProbe {
   void serve(Simulation& simulation) noexcept;
 
  private:
-  struct Order {
-    std::uint32_t number = 0;
-    std::size_t seeds = 0;
-    std::array<double, kTrain> beyond_tip_mm{};
-    double half_length_mm = 0.0;
-    std::uint32_t version = 0;
-    std::size_t count = 0;
-    std::array<Triple, kPoints> points{};
-  };
   static constexpr int kEachStep = 2;    ///< displacements computed after a step
   static constexpr int kWatchEvery = 4;  ///< steps between two looks at watched points
 
@@ -88,8 +55,8 @@ class TissueProbe {
   void search(Simulation& simulation);
   void look(Simulation& simulation);
 
-  Order wanted_;  ///< used by the reading thread
-  LatestValue<Order> order_;
+  TissueOrder wanted_;  ///< used by the reading thread
+  LatestValue<TissueOrder> order_;
   LatestValue<Answer> answer_;
   // Used by the loop's thread.
   Answer now_;

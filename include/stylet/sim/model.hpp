@@ -1,35 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "stylet/core/progress.hpp"
-#include "stylet/coupling/insertion.hpp"
-#include "stylet/sim/motion.hpp"
+#include "stylet/sim/model_stages.hpp"
 #include "stylet/sim/own_parts.hpp"
 #include "stylet/sim/recording.hpp"
-#include "stylet/sim/scenario.hpp"
-#include "stylet/sim/supports.hpp"
-
-#include <memory>
-#include <optional>
 
 namespace stylet {
-
-/// An insertion with entry point, direction, depth and motion determined.
-struct PlannedInsertion {
-  std::string name;                ///< template hole, or "needle 1", …
-  Vec3 entry = Vec3::Zero();       ///< [mm] LPS skin point on the needle's line
-  Vec3 direction = Vec3::UnitZ();  ///< unit, LPS
-  double depth_mm = 0.0;           ///< largest base depth, measured from skin contact
-  bool recorded = false;           ///< the base follows a recorded motion
-  BaseMotion motion;
-};
-
-/// The parts of a compiled model that take long to compute; they can be stored and passed to Model::compile().
-struct ModelCompliance {
-  MatX store;                  ///< [mm/N] (3c × 3c) K⁻¹ among the nodes of Tissue::corridor()
-  std::vector<double> kernel;  ///< MeshKernel::numbers() of the corridor; empty without a near field
-  MatX spread;                 ///< SpreadCompliance::matrix(); empty where nothing stiffens or creeps
-};
 
 /// A compiled scenario: mesh, stiffness factor, compliance near the planned paths, laws, supports. Immutable:
 /// simulations in any threads may share it. When a needle leaves the planned corridor, its simulation adds compliance
@@ -56,20 +32,20 @@ class Model {
 
   [[nodiscard]] const OwnParts& own_parts() const { return own_; }
   [[nodiscard]] const Scenario& scenario() const { return scenario_; }
-  [[nodiscard]] const TetMesh& mesh() const { return tissue_->mesh(); }
-  [[nodiscard]] const Tissue& tissue() const { return *tissue_; }
-  [[nodiscard]] const Topology& topology() const { return *topology_; }
-  [[nodiscard]] const Locator& locator() const { return *locator_; }
+  [[nodiscard]] const TetMesh& mesh() const { return built_.tissue->mesh(); }
+  [[nodiscard]] const Tissue& tissue() const { return *built_.tissue; }
+  [[nodiscard]] const Topology& topology() const { return *built_.topology; }
+  [[nodiscard]] const Locator& locator() const { return *built_.locator; }
   /// Compliance among the nodes of the corridor.
-  [[nodiscard]] const std::shared_ptr<const ComplianceStore>& store() const { return store_; }
+  [[nodiscard]] const std::shared_ptr<const ComplianceStore>& store() const { return compliance_.store; }
   /// The full K⁻¹ for engines that keep it; otherwise empty.
-  [[nodiscard]] const std::shared_ptr<const MatX>& inverse() const { return inverse_; }
+  [[nodiscard]] const std::shared_ptr<const MatX>& inverse() const { return compliance_.inverse; }
   /// Kernel of the mesh near the needles' ways, for coupling.method = "near-field"; otherwise empty.
-  [[nodiscard]] const std::shared_ptr<const MeshKernel>& kernel() const { return near_field_.kernel; }
+  [[nodiscard]] const std::shared_ptr<const MeshKernel>& kernel() const { return compliance_.kernel; }
   /// Compliance to forces that are spread widely, along the needles' ways, for coupling.method = "near-field" in tissue
   /// that stiffens or creeps; otherwise empty.
-  [[nodiscard]] const std::shared_ptr<const SpreadCompliance>& spread() const { return near_field_.spread; }
-  [[nodiscard]] const std::vector<RegionLaws>& laws() const { return laws_; }
+  [[nodiscard]] const std::shared_ptr<const SpreadCompliance>& spread() const { return compliance_.spread; }
+  [[nodiscard]] const std::vector<RegionLaws>& laws() const { return regions_.laws; }
   [[nodiscard]] const CouplingSettings& coupling() const { return coupling_; }
   [[nodiscard]] const std::vector<PlannedInsertion>& insertions() const { return insertions_.own; }
   /// Needles that go in before all insertions and stay (procedure.stabilising): each through its hole as the first
@@ -77,8 +53,8 @@ class Model {
   [[nodiscard]] const std::vector<PlannedInsertion>& staying() const { return insertions_.staying; }
   /// Radius [mm] around the planned paths within which compliance is precomputed: coupling.corridor_mm, or less if that
   /// radius holds more than coupling.corridor_nodes nodes.
-  [[nodiscard]] double corridor_mm() const { return corridor_mm_; }
-  [[nodiscard]] const std::vector<int>& target_regions() const { return target_; }
+  [[nodiscard]] double corridor_mm() const { return built_.corridor_mm; }
+  [[nodiscard]] const std::vector<int>& target_regions() const { return regions_.target; }
   [[nodiscard]] const Supports& supports() const { return supports_; }
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
 
@@ -93,35 +69,14 @@ class Model {
   Model() = default;
   Model(const Model&) = default;
   Scenario scenario_;
-  std::shared_ptr<const Tissue> tissue_;
-  std::shared_ptr<const Topology> topology_;
-  std::shared_ptr<const Locator> locator_;
-  std::shared_ptr<const ComplianceStore> store_;
-  std::shared_ptr<const MatX> inverse_;
-  struct {
-    std::shared_ptr<const MeshKernel> kernel;
-    std::shared_ptr<const SpreadCompliance> spread;
-  } near_field_;
-  std::vector<RegionLaws> laws_;
-  std::vector<TissueParameters> tissue_parameters_;  ///< by region
   CouplingSettings coupling_;
-  double corridor_mm_ = 0.0;
-  struct {
-    std::vector<PlannedInsertion> own, staying;
-  } insertions_;
-  std::vector<int> target_;
+  RegionTissue regions_;
+  PlannedInsertions insertions_;
   Supports supports_;
+  BuiltTissue built_;
+  PreparedCompliance compliance_;
   std::vector<std::string> warnings_;
   OwnParts own_;
 };
-
-/// Tenting [mm] of the surface of tissue with these parameters under a force F [N] on a flat punch of the needle's
-/// radius R: F (1 − ν²) / (2 R E), or less if the tissue stiffens (docs/theory/stiffening.md).
-double tenting_mm(const TissueParameters& tissue, double force_N, double needle_diameter_mm);
-
-/// Warnings about implausible tissue parameters, found before anything is simulated: tenting outside 3 … 20 mm, cutting
-/// lag above 5 mm.
-std::vector<std::string> tenting_warnings(const std::string& region, const TissueParameters& tissue,
-                                          double needle_diameter_mm);
 
 }  // namespace stylet

@@ -5,14 +5,11 @@
 #include <fmt/format.h>
 
 #include <stdexcept>
+#include <type_traits>
 
 namespace stylet::detail {
 
 namespace {
-
-void check(int error) {
-  if (error != 0) throw std::runtime_error(fmt::format("error {}", error));
-}
 
 /// @param flat dimension and number of each entity, alternating
 GmshLibrary::DimTags pairs(const std::vector<int>& flat) {
@@ -30,82 +27,65 @@ Result<const GmshLibrary*> GmshLibrary::get() {
     return failure(name,
                    fmt::format("the library that reads gmsh and MEDIT meshes cannot be loaded ({})", library.problem_),
                    "Install gmsh, or convert the mesh to VTU");
-  if (!library.whole_)
-    return failure(name, "the library that reads gmsh and MEDIT meshes lacks functions",
-                   "Install the version of gmsh with which the program was built, or convert the mesh to VTU");
   return &library;
 }
 
-GmshLibrary::GmshLibrary(void* loaded) {
-  if (loaded == nullptr) {
-    const char* said = dlerror();
-    problem_ = said != nullptr ? said : "no reason given";
-    return;
-  }
-  const auto find = [&]<class F>(F& function, const char* name) {
-    function = reinterpret_cast<F>(dlsym(loaded, name));
-    whole_ = whole_ && function != nullptr;
-  };
-  find(free_, "gmshFree");
-  find(initialize_, "gmshInitialize");
-  find(set_number_, "gmshOptionSetNumber");
-  find(logger_start_, "gmshLoggerStart");
-  find(logger_get_, "gmshLoggerGet");
-  find(merge_, "gmshMerge");
-  find(entities_, "gmshModelGetEntities");
-  find(groups_, "gmshModelGetPhysicalGroups");
-  find(groups_of_, "gmshModelGetPhysicalGroupsForEntity");
-  find(name_, "gmshModelGetPhysicalName");
-  find(nodes_, "gmshModelMeshGetNodes");
-  find(elements_, "gmshModelMeshGetElements");
-  find(properties_, "gmshModelMeshGetElementProperties");
-  find(get_string_, "gmshOptionGetString");
-  find(get_number_, "gmshOptionGetNumber");
-  find(views_, "gmshViewGetTags");
-  find(view_index_, "gmshViewGetIndex");
-  find(view_data_, "gmshViewGetHomogeneousModelData");
+GmshLibrary::GmshLibrary(void* loaded) : loaded_(loaded) {
+  if (loaded != nullptr) return;
+  const char* said = dlerror();
+  problem_ = said != nullptr ? said : "no reason given";
 }
+
+template <class Function, class... Arguments>
+auto GmshLibrary::call(const char* name, Arguments... arguments) const {
+  auto* const function = reinterpret_cast<Function*>(dlsym(loaded_, name));
+  if (function == nullptr) throw std::runtime_error(fmt::format("the library has no function {}", name));
+  int error = 0;
+  const auto check = [&error] {
+    if (error != 0) throw std::runtime_error(fmt::format("error {}", error));
+  };
+  if constexpr (std::is_void_v<decltype(function(arguments..., &error))>) {
+    function(arguments..., &error);
+    check();
+  } else {
+    const auto result = function(arguments..., &error);
+    check();
+    return result;
+  }
+}
+
+void GmshLibrary::free(void* data) const { reinterpret_cast<decltype(&gmshFree)>(dlsym(loaded_, "gmshFree"))(data); }
 
 template <class T>
 std::vector<T> GmshLibrary::taken(T* data, std::size_t size) const {
   std::vector<T> all(data, data + size);
-  free_(data);
+  free(data);
   return all;
 }
 
 std::string GmshLibrary::taken(char* text) const {
   std::string all = text != nullptr ? text : "";
-  free_(text);
+  free(text);
   return all;
 }
 
 void GmshLibrary::start() const {
-  int error = 0;
   const auto set = [&](const char* option, double value) {
-    set_number_(option, value, &error);
-    check(error);
+    call<decltype(gmshOptionSetNumber)>("gmshOptionSetNumber", option, value);
   };
-  initialize_(0, nullptr, 0, &error);
-  check(error);
+  call<decltype(gmshInitialize)>("gmshInitialize", 0, nullptr, 0);
   set("General.Terminal", 0);
   set("General.AbortOnError", 2);  // the functions report errors as return values
   set("General.NumThreads", 1);
-  logger_start_(&error);
-  check(error);
+  call<decltype(gmshLoggerStart)>("gmshLoggerStart");
 }
 
-void GmshLibrary::merge(const std::string& file) const {
-  int error = 0;
-  merge_(file.c_str(), &error);
-  check(error);
-}
+void GmshLibrary::merge(const std::string& file) const { call<decltype(gmshMerge)>("gmshMerge", file.c_str()); }
 
 std::string GmshLibrary::first_error() const {
   char** lines = nullptr;
   std::size_t count = 0;
-  int error = 0;
-  logger_get_(&lines, &count, &error);
-  check(error);
+  call<decltype(gmshLoggerGet)>("gmshLoggerGet", &lines, &count);
   std::string first;
   for (char* text : taken(lines, count)) {
     const std::string line = taken(text);
@@ -118,35 +98,28 @@ std::string GmshLibrary::first_error() const {
 GmshLibrary::DimTags GmshLibrary::entities(int dimension) const {
   int* flat = nullptr;
   std::size_t size = 0;
-  int error = 0;
-  entities_(&flat, &size, dimension, &error);
-  check(error);
+  call<decltype(gmshModelGetEntities)>("gmshModelGetEntities", &flat, &size, dimension);
   return pairs(taken(flat, size));
 }
 
 GmshLibrary::DimTags GmshLibrary::physical_groups(int dimension) const {
   int* flat = nullptr;
   std::size_t size = 0;
-  int error = 0;
-  groups_(&flat, &size, dimension, &error);
-  check(error);
+  call<decltype(gmshModelGetPhysicalGroups)>("gmshModelGetPhysicalGroups", &flat, &size, dimension);
   return pairs(taken(flat, size));
 }
 
 std::vector<int> GmshLibrary::physical_groups_of(int dimension, int entity) const {
   int* groups = nullptr;
   std::size_t size = 0;
-  int error = 0;
-  groups_of_(dimension, entity, &groups, &size, &error);
-  check(error);
+  call<decltype(gmshModelGetPhysicalGroupsForEntity)>("gmshModelGetPhysicalGroupsForEntity", dimension, entity, &groups,
+                                                      &size);
   return taken(groups, size);
 }
 
 std::string GmshLibrary::physical_name(int dimension, int group) const {
   char* name = nullptr;
-  int error = 0;
-  name_(dimension, group, &name, &error);
-  check(error);
+  call<decltype(gmshModelGetPhysicalName)>("gmshModelGetPhysicalName", dimension, group, &name);
   return taken(name);
 }
 
@@ -155,10 +128,9 @@ GmshLibrary::Nodes GmshLibrary::nodes() const {
   double* coordinates = nullptr;
   double* parameters = nullptr;
   std::size_t count = 0, numbers = 0, parameter_count = 0;
-  int error = 0;
-  nodes_(&tags, &count, &coordinates, &numbers, &parameters, &parameter_count, -1, -1, 0, 1, &error);
-  check(error);
-  free_(parameters);
+  call<decltype(gmshModelMeshGetNodes)>("gmshModelMeshGetNodes", &tags, &count, &coordinates, &numbers, &parameters,
+                                        &parameter_count, -1, -1, 0, 1);
+  free(parameters);
   return {taken(tags, count), taken(coordinates, numbers)};
 }
 
@@ -167,16 +139,14 @@ std::vector<GmshLibrary::Elements> GmshLibrary::elements(int dimension, int enti
   std::size_t **tags = nullptr, **nodes = nullptr;
   std::size_t *tag_counts = nullptr, *node_counts = nullptr;
   std::size_t type_count = 0, tag_lists = 0, node_lists = 0;
-  int error = 0;
-  elements_(&types, &type_count, &tags, &tag_counts, &tag_lists, &nodes, &node_counts, &node_lists, dimension, entity,
-            &error);
-  check(error);
+  call<decltype(gmshModelMeshGetElements)>("gmshModelMeshGetElements", &types, &type_count, &tags, &tag_counts,
+                                           &tag_lists, &nodes, &node_counts, &node_lists, dimension, entity);
   std::vector<Elements> all;
   for (std::size_t k = 0; k < type_count; ++k)
     all.push_back({types[k], taken(tags[k], tag_counts[k]), taken(nodes[k], node_counts[k])});
   for (void* list : {static_cast<void*>(types), static_cast<void*>(tags), static_cast<void*>(tag_counts),
                      static_cast<void*>(nodes), static_cast<void*>(node_counts)})
-    free_(list);
+    free(list);
   return all;
 }
 
@@ -184,36 +154,36 @@ GmshLibrary::ElementType GmshLibrary::element_type(int type) const {
   char* name = nullptr;
   double* local = nullptr;
   std::size_t numbers = 0;
-  int dimension = 0, order = 0, nodes = 0, primary = 0, error = 0;
-  properties_(type, &name, &dimension, &order, &nodes, &local, &numbers, &primary, &error);
-  check(error);
-  free_(local);
+  int dimension = 0, order = 0, nodes = 0, primary = 0;
+  call<decltype(gmshModelMeshGetElementProperties)>("gmshModelMeshGetElementProperties", type, &name, &dimension,
+                                                    &order, &nodes, &local, &numbers, &primary);
+  free(local);
   return {taken(name), nodes};
 }
 
 std::vector<GmshLibrary::ElementData> GmshLibrary::element_data() const {
   int* numbers = nullptr;
   std::size_t count = 0;
-  int error = 0;
-  views_(&numbers, &count, &error);
-  check(error);
+  call<decltype(gmshViewGetTags)>("gmshViewGetTags", &numbers, &count);
   std::vector<ElementData> all;
   for (const int view : taken(numbers, count)) {
-    const int index = view_index_(view, &error);
-    check(error);
+    const int index = call<decltype(gmshViewGetIndex)>("gmshViewGetIndex", view);
     double step = 0.0;
-    get_number_(fmt::format("View[{}].TimeStep", index).c_str(), &step, &error);
+    call<decltype(gmshOptionGetNumber)>("gmshOptionGetNumber", fmt::format("View[{}].TimeStep", index).c_str(), &step);
     char *kind = nullptr, *name = nullptr;
     std::size_t *tags = nullptr, tag_count = 0, value_count = 0;
     double *values = nullptr, time = 0.0;
     int components = 0;
-    view_data_(view, static_cast<int>(step), &kind, &tags, &tag_count, &values, &value_count, &time, &components,
-               &error);
-    if (error != 0) continue;  // data of points outside the mesh
+    try {
+      call<decltype(gmshViewGetHomogeneousModelData)>("gmshViewGetHomogeneousModelData", view, static_cast<int>(step),
+                                                      &kind, &tags, &tag_count, &values, &value_count, &time,
+                                                      &components);
+    } catch (const std::runtime_error&) {
+      continue;  // data of points outside the mesh
+    }
     ElementData data{.name = {}, .tags = taken(tags, tag_count), .values = taken(values, value_count)};
     if (taken(kind) != "ElementData") continue;
-    get_string_(fmt::format("View[{}].Name", index).c_str(), &name, &error);
-    check(error);
+    call<decltype(gmshOptionGetString)>("gmshOptionGetString", fmt::format("View[{}].Name", index).c_str(), &name);
     data.name = taken(name);
     if (components != 1 || data.values.size() != data.tags.size()) data.values.clear();
     all.push_back(std::move(data));

@@ -13,7 +13,8 @@
 
 namespace stylet::detail {
 
-/// The functions of the gmsh library that the reader calls. They throw std::runtime_error if gmsh reports an error.
+/// The functions of the gmsh library that the reader calls. They throw std::runtime_error if gmsh reports an error or
+/// does not have a function.
 class GmshLibrary {
  public:
   using DimTags = std::vector<std::pair<int, int>>;  ///< dimension and number of each entity or group
@@ -60,30 +61,16 @@ class GmshLibrary {
  private:
   explicit GmshLibrary(void* loaded);
 
+  /// Calls a function of the library, with a place for its error as the last argument.
+  template <class Function, class... Arguments>
+  auto call(const char* name, Arguments... arguments) const;
+  void free(void* data) const;
   template <class T>
   std::vector<T> taken(T* data, std::size_t size) const;
   std::string taken(char* text) const;
 
-  std::string problem_;  ///< why the library could not be loaded; empty: it is loaded
-  bool whole_ = true;    ///< all functions below have been found
-  decltype(&gmshFree) free_ = nullptr;
-  decltype(&gmshInitialize) initialize_ = nullptr;
-  decltype(&gmshOptionSetNumber) set_number_ = nullptr;
-  decltype(&gmshLoggerStart) logger_start_ = nullptr;
-  decltype(&gmshLoggerGet) logger_get_ = nullptr;
-  decltype(&gmshMerge) merge_ = nullptr;
-  decltype(&gmshModelGetEntities) entities_ = nullptr;
-  decltype(&gmshModelGetPhysicalGroups) groups_ = nullptr;
-  decltype(&gmshModelGetPhysicalGroupsForEntity) groups_of_ = nullptr;
-  decltype(&gmshModelGetPhysicalName) name_ = nullptr;
-  decltype(&gmshModelMeshGetNodes) nodes_ = nullptr;
-  decltype(&gmshModelMeshGetElements) elements_ = nullptr;
-  decltype(&gmshModelMeshGetElementProperties) properties_ = nullptr;
-  decltype(&gmshOptionGetString) get_string_ = nullptr;
-  decltype(&gmshOptionGetNumber) get_number_ = nullptr;
-  decltype(&gmshViewGetTags) views_ = nullptr;
-  decltype(&gmshViewGetIndex) view_index_ = nullptr;
-  decltype(&gmshViewGetHomogeneousModelData) view_data_ = nullptr;
+  void* loaded_;         ///< null: the library could not be loaded
+  std::string problem_;  ///< why not
 };
 
 }  // namespace stylet::detail

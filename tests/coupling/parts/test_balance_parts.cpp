@@ -361,6 +361,27 @@ TEST(NeedleSide, lends_its_springs_only_where_it_is_supported) {
   EXPECT_TRUE(side.lends_at_tip());
 }
 
+TEST(ContactRows, friction_drags_the_tissue_the_way_the_needle_slides) {
+  NeedleInTissue needle;
+  ContactRows rows(needle.block.settings, 10);
+  rows.take_places(needle.contacts);
+  constexpr double h = 0.001;
+  for (const double sense : {1.0, -1.0}) {
+    ShaftContact& contact = needle.contact(2);
+    contact.state = sense > 0.0 ? State::forward : State::backward;
+    contact.s_start = contact.s;
+    rows.soften(needle.contacts, h, false);
+    ASSERT_GT(contact.coulomb, 0.0);
+    // Twice the sliding friction: the excess moves the needle ahead of the tissue, the way it slides.
+    const Vec3 along = sense * rows.frame[2].col(2);
+    const double force = 2.0 * contact.coulomb;
+    const double ahead_mm = contact.slip * (force - contact.coulomb) + contact.softness * force;
+    rows.now.segment<3>(6) = force * along;
+    rows.gap.segment<3>(6) = -ahead_mm * along;
+    EXPECT_NEAR(rows.error(2).norm(), 0.0, 1e-12 * ahead_mm) << sense;
+  }
+}
+
 TEST(TissueBlock, is_the_compliances_block_of_the_present_contacts) {
   NeedleInTissue needle;
   ContactRows rows(needle.block.settings, 10);
