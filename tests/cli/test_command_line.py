@@ -5,6 +5,7 @@ import json
 import os
 import subprocess
 import unittest
+from pathlib import Path
 
 import samples
 from program import STYLET, InFolder, commands
