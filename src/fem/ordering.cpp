@@ -2,6 +2,7 @@
 #include "ordering.hpp"
 
 #include <cassert>
+#include <mutex>
 
 namespace stylet::detail {
 namespace {
@@ -62,6 +63,10 @@ std::vector<int> elimination_order(const Eigen::SparseMatrix<double>& nodes, std
   std::vector<int> order(rest.nodes.size());
   if (!order.empty()) {
     cholmod_sparse pattern = view(rest.pattern, CHOLMOD_PATTERN);
+    // METIS draws from rand(), which all threads share: two orderings at the same time would disturb each other, and
+    // the factor's last bits would differ from run to run.
+    static std::mutex one_at_a_time;
+    const std::scoped_lock lock(one_at_a_time);
     if (!cholmod_metis(&pattern, nullptr, 0, 1, order.data(), &common)) return {};
     for (int& node : order) node = rest.nodes[node];
   }

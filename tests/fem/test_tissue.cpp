@@ -283,5 +283,26 @@ TEST(Tissue, repeated_and_unsorted_supports_are_taken_once) {
   EXPECT_EQ(build(mesh, {kGland}, fixed).fixed_nodes(), sorted);
 }
 
+// Fill-reducing orderings draw random numbers: those of one thread must not disturb those of another.
+TEST(Tissue, has_the_same_bits_when_several_are_built_at_once) {
+  const auto displacement = [] {
+    TetMesh mesh = box_mesh({0, 0, 0}, {50, 50, 50}, {13, 13, 13}, 0.15);
+    const auto fixed = nodes_where(mesh, [](const Vec3& x) { return x.z() == 0.0; });
+    const Tissue tissue = build(std::move(mesh), {{0.01, 0.49}}, fixed);
+    MatX f = MatX::Zero(3 * Eigen::Index{tissue.displacement_nodes()}, 1);
+    f.bottomRows<3>().setOnes();
+    return tissue.solve(f);
+  };
+  const MatX alone = displacement();
+  for (int round = 0; round < 5; ++round) {
+    std::vector<MatX> together(4);
+    {
+      std::vector<std::jthread> threads;
+      for (MatX& one : together) threads.emplace_back([&one, &displacement] { one = displacement(); });
+    }
+    for (const MatX& one : together) ASSERT_EQ(one, alone);
+  }
+}
+
 }  // namespace
 }  // namespace stylet
