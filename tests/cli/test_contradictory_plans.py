@@ -1,18 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """stylet dose with plans that contradict themselves, made from plans of our own: each is refused, or warned of on the
-terminal, in dose.json and on the page. With --table the cases are printed as in docs/reference/plan_rules.md."""
+terminal, in dose.json and on the page."""
 import copy
 import json
 import math
 import subprocess
-import sys
+import unittest
 from pathlib import Path
 
-if "--table" not in sys.argv:
-    import unittest
-
-    from program import InFolder, page_text, run
+from program import InFolder, page_text, run
 
 
 def ball(radius, name="Prostate", at=(0, 0, 0)):
@@ -197,23 +194,6 @@ TARGET_CASES = [
 CONTROLS = [("seeds (JSON)", ldr), ("afterloader (JSON)", hdr)]
 
 
-def table():
-    """The cases as rows of Markdown."""
-    rows = [("JSON", name, rule) for name, _, _, _, rule in JSON_CASES]
-    rows += [("CSV", name, rule) for name, _, rule in CSV_CASES]
-    rows += [("DICOM", name, rule) for name, _, _, _, rule in DICOM_CASES]
-    return rows + [("structures", name, rule) for name, _, rule in TARGET_CASES]
-
-
-def table_text():
-    return "\n".join(f"| {kind} | {name} | {rule} |" for kind, name, rule in table())
-
-
-if "--table" in sys.argv:
-    print(table_text())
-    sys.exit(0)
-
-
 class ContradictoryPlans(InFolder):
     def setUp(self):
         super().setUp()
@@ -253,10 +233,10 @@ class ContradictoryPlans(InFolder):
             self.assertNotIn("warning", done.stderr)
         return out
 
-    def test_the_page_of_rules_lists_all_cases(self):
+    def test_the_page_of_rules_says_how_many_cases_there_are(self):
         page = Path(__file__).parents[2] / "docs/reference/plan_rules.md"
-        self.assertIn(table_text() + "\n", page.read_text())
-        self.assertIn(f"makes {len(table())} plans", page.read_text())
+        cases = len(JSON_CASES + CSV_CASES + DICOM_CASES + TARGET_CASES)
+        self.assertIn(f"makes {cases} plans", page.read_text())
 
     def test_plans_that_are_right_give_no_warning(self):
         for name, plan in CONTROLS:
