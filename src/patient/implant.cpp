@@ -159,145 +159,235 @@ void append(std::vector<std::string>& all, const std::vector<std::string>& more)
   }
 }
 
+/// An implant from its plan to its figures, stage by stage. Each stage adds to the outcome or fails.
+class ImplantStages {
+ public:
+  ImplantStages(const Scenario& scenario, const std::string& where, const ImplantSettings& settings,
+                const Progress& progress)
+      : scenario_(scenario), where_(where), settings_(settings), progress_(progress) {}
+
+  Result<ImplantOutcome> run();
+
+ private:
+  Result<> read();
+  Result<> dose_of_plan();
+  Result<> mesh();
+  Result<> simulate();
+  Result<> delivered_dose();
+  Result<> dose_at_planning();
+  Result<> other_tissue();
+  Result<> compare_with_found();
+  void collect_words();
+
+  [[nodiscard]] bool is_temporary() const { return of_->plan.implant == Implant::temporary; }
+  /// The needles go through the tissue as it is in the contours; the displacement by the probe comes on top of theirs.
+  [[nodiscard]] Result<std::optional<ImplantProbe>> probe_in(const Scenario& scenario) const;
+  [[nodiscard]] Result<ImplantHistory> history_of(const Scenario& scenario, const std::optional<ImplantProbe>& pressing,
+                                                  const std::vector<NeedleLoad>& loads) const;
+  [[nodiscard]] Result<DoseEvaluation> dose_of(const DosePlan& plan, const DoseOptions& options) const {
+    return evaluate_dose(plan, of_->source, of_->structures.structures, options, progress_);
+  }
+  [[nodiscard]] Result<DoseEvaluation> dose_of(const ImplantHistory& history) const;
+  /// Options for a dose of which only histograms and goals are shown, which do not need its grid.
+  [[nodiscard]] DoseOptions without_grid() const;
+
+  const Scenario& scenario_;
+  const std::string& where_;
+  const ImplantSettings& settings_;
+  const Progress& progress_;
+  std::optional<ImplantPlan> of_;  ///< there after read()
+  std::optional<FoundSeeds> found_seeds_;
+  FoundPatient whose_;
+  MeshedAnatomy patient_;
+  std::optional<ImplantProbe> probe_;
+  std::vector<NeedleLoad> aimed_;  ///< needles as they are inserted: as planned, or compensated
+  ImplantOutcome outcome_;
+};
+
+Result<> ImplantStages::read() {
+  if (settings_.span && scenario_.tissue_model.preset != TissuePreset::typical) {
+    return input_error(where_,
+                       "a span is from firm over typical to soft tissue, and the scenario has another tissue.preset",
+                       "Leave tissue.preset out, or do not ask for a span");
+  }
+  Result<ImplantPlan> read = read_implant_plan(scenario_, where_, progress_);
+  if (!read) return read.error();
+  of_ = *std::move(read);
+  if (is_temporary()) {
+    if (Result<> possible = check_temporary_settings(settings_, of_->plan); !possible) return possible.error();
+  }
+  Result<std::optional<FoundSeeds>> found = found_seeds_of(settings_, of_->plan);
+  if (!found) return found.error();
+  found_seeds_ = *std::move(found);
+  Result<FoundPatient> whose = patient_of_implant(scenario_, *of_, settings_);
+  if (!whose) return whose.error();
+  whose_ = *std::move(whose);
+  outcome_.scenario = scenario_;
+  outcome_.seed_length_mm = of_->source.outer_length_mm;
+  return Ok{};
+}
+
+/// It comes first: a plan of another patient is found out before minutes are spent on needles.
+Result<> ImplantStages::dose_of_plan() {
+  DoseOptions without_swelling = of_->options;
+  without_swelling.swelling = {};
+  Result<DoseEvaluation> planned = dose_of(of_->plan, without_swelling);
+  if (!planned) return planned.error();
+  outcome_.planned = *std::move(planned);
+  return Ok{};
+}
+
+Result<> ImplantStages::mesh() {
+  Result<MeshedAnatomy> patient = mesh_patient(scenario_, progress_);
+  if (!patient) return patient.error();
+  patient_ = *std::move(patient);
+  Result<std::optional<ImplantProbe>> probe = probe_in(scenario_);
+  if (!probe) return probe.error();
+  probe_ = *std::move(probe);
+  if (probe_) outcome_.probe = probe_->report;
+  return Ok{};
+}
+
+Result<std::optional<ImplantProbe>> ImplantStages::probe_in(const Scenario& scenario) const {
+  if (is_temporary()) return std::optional<ImplantProbe>();
+  return implant_probe(scenario, patient_.mesh, where_, progress_);
+}
+
+Result<ImplantHistory> ImplantStages::history_of(const Scenario& scenario, const std::optional<ImplantProbe>& pressing,
+                                                 const std::vector<NeedleLoad>& loads) const {
+  Result<ImplantHistory> history =
+      simulate_implant(scenario, patient_.mesh, loads, outcome_.seed_length_mm, where_, progress_);
+  if (history && pressing && !scenario.probe.in_contours)
+    let_tissue_go_back(*pressing->patient.locator, pressing->in, outcome_.seed_length_mm, history->seeds);
+  return history;
+}
+
+Result<DoseEvaluation> ImplantStages::dose_of(const ImplantHistory& history) const {
+  const DosePlan delivered = delivered_plan(of_->plan, history);
+  if (delivered.sources.empty())
+    return failure(where_, "all seeds are lost, so there is no dose", "Lower seed.loss_percent");
+  return dose_of(delivered, of_->options);
+}
+
+DoseOptions ImplantStages::without_grid() const {
+  DoseOptions options = of_->options;
+  options.grid_step_mm *= kGridNotShown;
+  return options;
+}
+
+Result<> ImplantStages::simulate() {
+  aimed_ = of_->needles;
+  if (settings_.compensate == 0) {
+    Result<ImplantHistory> history = history_of(scenario_, probe_, aimed_);
+    if (!history) return history.error();
+    outcome_.history = *std::move(history);
+    return Ok{};
+  }
+  auto done = compensate(of_->needles, settings_.compensate,
+                         [&](const std::vector<NeedleLoad>& loads) { return history_of(scenario_, probe_, loads); });
+  if (!done) return done.error();
+  auto before = dose_of(done->before);
+  if (!before) return before.error();
+  outcome_.before = OtherImplant{"before compensation", without_records(std::move(done->before)), *std::move(before)};
+  outcome_.history = std::move(done->after);
+  aimed_ = std::move(done->needles);
+  return Ok{};
+}
+
+Result<> ImplantStages::delivered_dose() {
+  Result<DoseEvaluation> dose = dose_of(outcome_.history);
+  if (!dose) return dose.error();
+  outcome_.delivered = *std::move(dose);
+  Result<std::optional<DoseEvaluation>> probe_out =
+      dose_without_probe(*of_, outcome_.delivered.plan, probe_, progress_);
+  if (!probe_out) return probe_out.error();
+  outcome_.probe_out = *std::move(probe_out);
+  Result<std::optional<DoseCourse>> oedema = course_of_oedema(*of_, outcome_.delivered.plan);
+  if (!oedema) return oedema.error();
+  outcome_.oedema = *std::move(oedema);
+  return Ok{};
+}
+
+Result<> ImplantStages::dose_at_planning() {
+  if (!is_temporary()) return Ok{};
+  ImplantHistory then = history_at_planning(outcome_.history);
+  Result<DoseEvaluation> seen = dose_of(delivered_plan(of_->plan, then), without_grid());
+  if (!seen) return seen.error();
+  outcome_.at_planning = OtherImplant{"at planning", std::move(then), *std::move(seen)};
+  return Ok{};
+}
+
+Result<> ImplantStages::other_tissue() {
+  if (!settings_.span) return Ok{};
+  for (const TissuePreset preset : {TissuePreset::firm, TissuePreset::soft}) {
+    Scenario other = scenario_;
+    other.tissue_model.preset = preset;
+    const Result<std::optional<ImplantProbe>> pressing = probe_in(other);
+    if (!pressing) return pressing.error();
+    Result<ImplantHistory> history = history_of(other, *pressing, aimed_);
+    if (!history) return history.error();
+    Result<DoseEvaluation> delivered = dose_of(*history);
+    if (!delivered) return delivered.error();
+    outcome_.spans.push_back({"tissue " + word(preset), without_records(*std::move(history)), *std::move(delivered)});
+  }
+  return Ok{};
+}
+
+Result<> ImplantStages::compare_with_found() {
+  if (!found_seeds_) return Ok{};
+  FoundImplant found{.seeds = *std::move(found_seeds_)};
+  found.comparison = compare_found(outcome_.history, found.seeds.seeds);
+  const auto found_dose = [&](const Vec3& shift_mm, const DoseOptions& options) {
+    return dose_of(found_plan(of_->plan, outcome_.history, found.seeds.seeds, found.comparison, shift_mm), options);
+  };
+  Result<DoseEvaluation> as_found = found_dose(Vec3::Zero(), of_->options);
+  if (!as_found) return as_found.error();
+  found.dose = *std::move(as_found);
+  Result<DoseEvaluation> without_shift = found_dose(found.comparison.matching.shift_mm, without_grid());
+  if (!without_shift) return without_shift.error();
+  found.dose_without_shift = *std::move(without_shift);
+  append(outcome_.warnings, found.seeds.notes);
+  append(outcome_.warnings, match_warnings(found));
+  outcome_.found = std::move(found);
+  return Ok{};
+}
+
+/// Writes whose implant it is into the doses, and collects all that a user should know.
+void ImplantStages::collect_words() {
+  const PatientRecord record = record_of_files(whose_, of_->plan, of_->source);
+  const auto write_patient = [&](DoseEvaluation& dose) {
+    dose.patient = record;
+    dose.assumptions.push_back(patient_sentence(whose_));
+  };
+  write_patient(outcome_.planned);
+  write_patient(outcome_.delivered);
+  if (outcome_.found) write_patient(outcome_.found->dose);
+  append(outcome_.warnings, whose_.notes);
+  append(outcome_.warnings, of_->plan.notes);
+  append(outcome_.warnings, of_->structures.notes);
+  append(outcome_.warnings, patient_.report.notes);
+  if (probe_) append(outcome_.warnings, probe_harms(*probe_, outcome_.history));
+  append(outcome_.warnings, probe_warnings(scenario_, *of_, outcome_.found.has_value()));
+  append(outcome_.warnings, outcome_.history.warnings);
+  append(outcome_.warnings, outcome_.delivered.warnings);
+}
+
+Result<ImplantOutcome> ImplantStages::run() {
+  for (auto stage : {&ImplantStages::read, &ImplantStages::dose_of_plan, &ImplantStages::mesh, &ImplantStages::simulate,
+                     &ImplantStages::delivered_dose, &ImplantStages::dose_at_planning, &ImplantStages::other_tissue,
+                     &ImplantStages::compare_with_found}) {
+    if (Result<> done = (this->*stage)(); !done) return done.error();
+  }
+  collect_words();
+  outcome_.mesh = std::move(patient_.mesh);
+  return std::move(outcome_);
+}
+
 }  // namespace
 
 Result<ImplantOutcome> implant(const Scenario& scenario, const std::string& where, const ImplantSettings& settings,
                                const Progress& progress) {
-  if (settings.span && scenario.tissue_model.preset != TissuePreset::typical) {
-    return input_error(where,
-                       "a span is from firm over typical to soft tissue, and the scenario has another tissue.preset",
-                       "Leave tissue.preset out, or do not ask for a span");
-  }
-  Result<ImplantPlan> read = read_implant_plan(scenario, where, progress);
-  if (!read) return read.error();
-  const ImplantPlan& of = *read;
-  if (of.plan.implant == Implant::temporary) {
-    if (Result<> possible = check_temporary_settings(settings, of.plan); !possible) return possible.error();
-  }
-  Result<std::optional<FoundSeeds>> found_seeds = found_seeds_of(settings, of.plan);
-  if (!found_seeds) return found_seeds.error();
-  const Result<FoundPatient> whose = patient_of_implant(scenario, of, settings);
-  if (!whose) return whose.error();
-  const auto write_patient = [record = record_of_files(*whose, of.plan, of.source), &whose](DoseEvaluation& dose) {
-    dose.patient = record;
-    dose.assumptions.push_back(patient_sentence(*whose));
-  };
-  ImplantOutcome outcome;
-  outcome.scenario = scenario;
-  outcome.seed_length_mm = of.source.outer_length_mm;
-  const auto dose_of = [&](const ImplantHistory& history) -> Result<DoseEvaluation> {
-    const DosePlan delivered = delivered_plan(of.plan, history);
-    if (delivered.sources.empty())
-      return failure(where, "all seeds are lost, so there is no dose", "Lower seed.loss_percent");
-    return evaluate_dose(delivered, of.source, of.structures.structures, of.options, progress);
-  };
-  // The dose of the plan comes first: a plan of another patient is found out before minutes are spent on needles.
-  DoseOptions without_swelling = of.options;
-  without_swelling.swelling = {};
-  Result<DoseEvaluation> planned =
-      evaluate_dose(of.plan, of.source, of.structures.structures, without_swelling, progress);
-  if (!planned) return planned.error();
-  outcome.planned = *std::move(planned);
-
-  Result<MeshedAnatomy> patient = mesh_patient(scenario, progress);
-  if (!patient) return patient.error();
-  // The needles go through the tissue as it is in the contours; the displacement by the probe comes on top of theirs.
-  const auto probe_in = [&](const Scenario& s) -> Result<std::optional<ImplantProbe>> {
-    if (of.plan.implant == Implant::temporary) return std::optional<ImplantProbe>();
-    return implant_probe(s, patient->mesh, where, progress);
-  };
-  Result<std::optional<ImplantProbe>> probe = probe_in(scenario);
-  if (!probe) return probe.error();
-  if (*probe) outcome.probe = (*probe)->report;
-  const auto simulate = [&](const Scenario& s, const std::optional<ImplantProbe>& pressing,
-                            const std::vector<NeedleLoad>& loads) {
-    Result<ImplantHistory> history = simulate_implant(s, patient->mesh, loads, outcome.seed_length_mm, where, progress);
-    if (history && pressing && !s.probe.in_contours)
-      let_tissue_go_back(*pressing->patient.locator, pressing->in, outcome.seed_length_mm, history->seeds);
-    return history;
-  };
-  std::vector<NeedleLoad> aimed = of.needles;
-  if (settings.compensate > 0) {
-    auto done = compensate(of.needles, settings.compensate,
-                           [&](const std::vector<NeedleLoad>& loads) { return simulate(scenario, *probe, loads); });
-    if (!done) return done.error();
-    auto before = dose_of(done->before);
-    if (!before) return before.error();
-    outcome.before = OtherImplant{"before compensation", without_records(std::move(done->before)), *std::move(before)};
-    outcome.history = std::move(done->after);
-    aimed = std::move(done->needles);
-  } else {
-    Result<ImplantHistory> history = simulate(scenario, *probe, aimed);
-    if (!history) return history.error();
-    outcome.history = *std::move(history);
-  }
-  Result<DoseEvaluation> dose = dose_of(outcome.history);
-  if (!dose) return dose.error();
-  outcome.delivered = *std::move(dose);
-  Result<std::optional<DoseEvaluation>> probe_out = dose_without_probe(of, outcome.delivered.plan, *probe, progress);
-  if (!probe_out) return probe_out.error();
-  outcome.probe_out = *std::move(probe_out);
-  Result<std::optional<DoseCourse>> oedema = course_of_oedema(of, outcome.delivered.plan);
-  if (!oedema) return oedema.error();
-  outcome.oedema = *std::move(oedema);
-  if (of.plan.implant == Implant::temporary) {
-    ImplantHistory then = history_at_planning(outcome.history);
-    // Only histograms and goals of this dose are shown, which do not need its grid.
-    DoseOptions at_planning = of.options;
-    at_planning.grid_step_mm *= kGridNotShown;
-    Result<DoseEvaluation> seen =
-        evaluate_dose(delivered_plan(of.plan, then), of.source, of.structures.structures, at_planning, progress);
-    if (!seen) return seen.error();
-    outcome.at_planning = OtherImplant{"at planning", std::move(then), *std::move(seen)};
-  }
-  for (const TissuePreset preset : {TissuePreset::firm, TissuePreset::soft}) {
-    if (!settings.span) break;
-    Scenario other = scenario;
-    other.tissue_model.preset = preset;
-    const Result<std::optional<ImplantProbe>> other_probe = probe_in(other);
-    if (!other_probe) return other_probe.error();
-    Result<ImplantHistory> history = simulate(other, *other_probe, aimed);
-    if (!history) return history.error();
-    Result<DoseEvaluation> delivered = dose_of(*history);
-    if (!delivered) return delivered.error();
-    outcome.spans.push_back({"tissue " + word(preset), without_records(*std::move(history)), *std::move(delivered)});
-  }
-
-  if (*found_seeds) {
-    FoundImplant found{.seeds = **std::move(found_seeds)};
-    found.comparison = compare_found(outcome.history, found.seeds.seeds);
-    const auto found_dose = [&](const Vec3& shift_mm, double grid_step_mm) {
-      DoseOptions of_found = of.options;
-      of_found.grid_step_mm = grid_step_mm;
-      return evaluate_dose(found_plan(of.plan, outcome.history, found.seeds.seeds, found.comparison, shift_mm),
-                           of.source, of.structures.structures, of_found, progress);
-    };
-    Result<DoseEvaluation> as_found = found_dose(Vec3::Zero(), of.options.grid_step_mm);
-    if (!as_found) return as_found.error();
-    found.dose = *std::move(as_found);
-    // Only histograms and goals of this dose are shown, which do not need its grid.
-    Result<DoseEvaluation> without_shift =
-        found_dose(found.comparison.matching.shift_mm, kGridNotShown * of.options.grid_step_mm);
-    if (!without_shift) return without_shift.error();
-    found.dose_without_shift = *std::move(without_shift);
-    append(outcome.warnings, found.seeds.notes);
-    append(outcome.warnings, match_warnings(found));
-    outcome.found = std::move(found);
-  }
-
-  write_patient(outcome.planned);
-  write_patient(outcome.delivered);
-  if (outcome.found) write_patient(outcome.found->dose);
-  append(outcome.warnings, whose->notes);
-  outcome.mesh = std::move(patient->mesh);
-  append(outcome.warnings, of.plan.notes);
-  append(outcome.warnings, of.structures.notes);
-  append(outcome.warnings, patient->report.notes);
-  if (*probe) append(outcome.warnings, probe_harms(**probe, outcome.history));
-  append(outcome.warnings, probe_warnings(scenario, of, outcome.found.has_value()));
-  append(outcome.warnings, outcome.history.warnings);
-  append(outcome.warnings, outcome.delivered.warnings);
-  return outcome;
+  return ImplantStages(scenario, where, settings, progress).run();
 }
 
 }  // namespace stylet

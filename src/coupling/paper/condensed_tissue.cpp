@@ -12,6 +12,8 @@ constexpr long kSwitchesToRebuild = 20000;
 
 CondensedTissue::CondensedTissue(int contacts)
     : system_(contacts),
+      y_(VecX::Zero(3 * static_cast<Eigen::Index>(contacts))),
+      x_(y_),
       across_(MatX::Zero(3 * static_cast<Eigen::Index>(contacts), 3)),
       frames_(static_cast<std::size_t>(contacts), Mat3::Identity()),
       points_(static_cast<std::size_t>(contacts), -1),

@@ -27,6 +27,9 @@ class CondensedTissue {
   [[nodiscard]] const CondensedSystem& system() const { return system_; }
   /// Number of the first of a contact's three rows.
   [[nodiscard]] int row(int load) const { return 3 * slot_of_[static_cast<std::size_t>(load)]; }
+  /// (rows of K_W) The controlled quantity of each row, displacement [mm] or force [N], and the other one.
+  [[nodiscard]] VecX& controlled() { return y_; }
+  [[nodiscard]] VecX& other() { return x_; }
   /// [mm/N] Displacement of a row by its own force; the inverse where the row is displacement-controlled.
   [[nodiscard]] double own(int row) const { return system_(row, row); }
 
@@ -35,6 +38,7 @@ class CondensedTissue {
   [[nodiscard]] bool has_all(const Contacts& contacts) const;
 
   CondensedSystem system_;
+  VecX y_, x_;
   MatX across_;                                              ///< work space for a contact's columns
   std::vector<Mat3> frames_;                                 ///< (contacts) frames of the rows of K_W
   std::vector<int> points_;                                  ///< (contacts) numbers in ContactCompliance

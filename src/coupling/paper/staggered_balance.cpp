@@ -59,9 +59,7 @@ StaggeredBalance::StaggeredBalance(const BalanceParts& parts)
       states_(parts_.contacts),
       tissue_(parts.settings.capacity + 1),
       bent_(parts_.contacts.needle.state().size(), parts.settings.capacity + 1),
-      y_(VecX::Zero(3 * (static_cast<Eigen::Index>(parts.settings.capacity) + 1))),
-      x_(y_),
-      force_(y_) {}
+      force_(tissue_.controlled()) {}
 
 /// Turns the frames with the needle, and prescribes the value of each row by its contact's state.
 void StaggeredBalance::impose_needle_on_tissue(double h) {
@@ -86,7 +84,7 @@ void StaggeredBalance::impose_needle_on_tissue(double h) {
     condensed.control_displacement(row + 2, axial);
 
     const Vec3 gap = Q.transpose() * (rows_.needle_at(c) - rows_.unloaded(parts_.contacts, c));
-    auto y = y_.segment<3>(row);
+    auto y = tissue_.controlled().segment<3>(row);
     y = Vec3::Zero();
     if (lateral) y.head<2>() = gap.head<2>() + rows_.shift.segment<2>(3 * c);
     if (c == 0 && held && !lateral) y.head<2>() = Q.leftCols<2>().transpose() * tip.bevel_force();
@@ -101,8 +99,9 @@ void StaggeredBalance::solve_tissue(double h) {
   const CondensedSystem& condensed = tissue_.system();
   const TipContact& tip = parts_.contacts.tip;
   const Eigen::Index size = 3 * static_cast<Eigen::Index>(condensed.points());
-  auto x = x_.head(size);
-  x.noalias() = condensed.matrix().lazyProduct(y_.head(size));
+  VecX& y = tissue_.controlled();
+  auto x = tissue_.other().head(size);
+  x.noalias() = condensed.matrix().lazyProduct(y.head(size));
   change_ = 0.0;
   for (int c = 0; c < parts_.contacts.count(); ++c) {
     const int row = tissue_.row(c) + 2;
@@ -117,7 +116,7 @@ void StaggeredBalance::solve_tissue(double h) {
       const CuttingLaw law = tip.cutting_law(h);
       advance_ = tip.cut.advance() + (way - x[row]) / (t.dot(tip.cut.direction()) + own / law.slip_mm_per_N);
       force = law.force(advance_);
-      change_ = std::max(change_, std::abs(force - y_[row]));
+      change_ = std::max(change_, std::abs(force - y[row]));
     } else {
       ShaftContact& contact = parts_.contacts.of_shaft(c);
       const double ahead = x[row] - way;
@@ -129,13 +128,13 @@ void StaggeredBalance::solve_tissue(double h) {
         force = contact.sense() * contact.coulomb - (contact.s - contact.s_start) / contact.slip;
       }
     }
-    const double change = force - y_[row];
-    y_[row] = force;
+    const double change = force - y[row];
+    y[row] = force;
     x += change * condensed.matrix().col(row);
   }
   for (int c = 0; c < parts_.contacts.count(); ++c) {
     const int row = tissue_.row(c);
-    for (int i = 0; i < 3; ++i) force_[3 * c + i] = condensed.is_displacement(row + i) ? x[row + i] : y_[row + i];
+    for (int i = 0; i < 3; ++i) force_[3 * c + i] = condensed.is_displacement(row + i) ? x[row + i] : y[row + i];
     parts_.contacts.force(c).noalias() = rows_.frame[static_cast<std::size_t>(c)] * force_.segment<3>(3 * c);
   }
 }
@@ -146,7 +145,7 @@ void StaggeredBalance::solve_tissue(double h) {
 bool StaggeredBalance::switch_contacts(Step& step) {
   const int tip_row = tissue_.row(0) + 2;
   const double opening =
-      rows_.frame[0].col(2).dot(rows_.needle_at(0) - rows_.unloaded(parts_.contacts, 0)) - x_[tip_row];
+      rows_.frame[0].col(2).dot(rows_.needle_at(0) - rows_.unloaded(parts_.contacts, 0)) - tissue_.other()[tip_row];
   bool changed = false;
   for (int c = parts_.contacts.count() - 1; c >= 0; --c) {
     const double axial = force_[3 * c + 2];

@@ -30,8 +30,6 @@ class StaggeredBalance : public BalanceSolver {
   ContactStates states_;
   CondensedTissue tissue_;
   DampedNeedle bent_;
-  VecX y_;                ///< (rows of K_W) the controlled quantity of each row: displacement [mm] or force [N]
-  VecX x_;                ///< (rows of K_W) the other quantity of each row
   VecX force_;            ///< [N] (3 contacts) on the tissue, in the contacts' frames
   double advance_ = 0.0;  ///< [mm] length of cut in this sub-step
   double change_ = 0.0;   ///< [N] last change of friction and cutting forces from one iteration to the next
