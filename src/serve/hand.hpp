@@ -21,12 +21,12 @@ struct HandTarget {
 
 /// The limits of the motion of a hand at a page.
 struct HandLimits {
-  double depth_mm = 0.0;    ///< largest depth
-  double behind_mm = 30.0;  ///< largest distance in front of the skin
-  double speed_mm_per_s = 200.0;
-  double tilt_deg = 10.0;
-  double turn_deg_per_s = 90.0;  ///< rate of roll
-  double tilt_deg_per_s = 20.0;
+  double depth_mm = 0.0;                     ///< largest depth
+  static constexpr double behind_mm = 30.0;  ///< largest distance in front of the skin
+  static constexpr double speed_mm_per_s = 200.0;
+  static constexpr double tilt_deg = 10.0;
+  static constexpr double turn_deg_per_s = 90.0;  ///< rate of roll
+  static constexpr double tilt_deg_per_s = 20.0;
 };
 HandLimits hand_limits(const Scenario& scenario);
 

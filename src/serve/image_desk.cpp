@@ -2,14 +2,12 @@
 #include "image_desk.hpp"
 
 #include "image_maker.hpp"
-#include "tracked_probe.hpp"
 
 #include "stylet/realtime/steppable.hpp"
 
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <variant>
 
 namespace stylet::serve {
 
@@ -17,29 +15,6 @@ namespace {
 
 constexpr std::array<const char*, 4> kShownImages{"none", "transverse", "sagittal", "xray"};
 constexpr auto kImageEvery = std::chrono::milliseconds(40);  // a picture takes less; the rest is left to the loop
-
-/// The state of the loop that a picture needs.
-struct LoopState {
-  double time_s = 0.0;
-  std::vector<TissueForce> forces;
-  ShownNeedle needle;
-  std::vector<ShownSeed> seeds;
-};
-
-bool is_of_pictures(std::string_view key) {
-  return key.starts_with("probe.") || key.starts_with("ultrasound.") || key.starts_with("fluoroscopy.");
-}
-
-bool has_same_tables(const Scenario& a, const Scenario& b) {
-  return a.probe == b.probe && a.ultrasound == b.ultrasound && a.fluoroscopy == b.fluoroscopy;
-}
-
-/// Takes the tables of pictures over from another scenario.
-void take_tables(Scenario& to, const Scenario& from) {
-  to.probe = from.probe;
-  to.ultrasound = from.ultrasound;
-  to.fluoroscopy = from.fluoroscopy;
-}
 
 }  // namespace
 
@@ -51,199 +26,127 @@ std::optional<ShownImage> shown_image(std::string_view name) {
   return static_cast<ShownImage>(found - kShownImages.begin());
 }
 
-struct ImageDesk::Parts {
-  Parts() {
-    thread = std::jthread([this](const std::stop_token& stop) { run(stop); });
-  }
-
-  std::mutex mutex;
-  std::condition_variable_any wake;
-  // Guarded by the mutex.
-  std::optional<ImageSubject> patient;  ///< taken by the thread
-  Scenario tables;                      ///< as set by the pages; in a replay with the recorded place of the probe
-  bool is_probe_moved = false;          ///< by a page, during a replay
-  ShownImage shown = ShownImage::none;
-  bool is_serving = false;  ///< a companion wants pictures
-  bool is_changed = false;  ///< the tables or the kind of picture
-  std::optional<Pose> tracked;
-  bool is_moved = false;  ///< the tracked pose, or the patient, has changed
-  std::variant<std::monostate, LoopState, Moment> newest;
-  std::shared_ptr<const LiveImage> made;
-  std::string problem, stage, probe_problem;
-
-  // Used by the caller's thread.
-  Scenario planned;  ///< of the open patient, as its file has it
-  struct SetAside {
-    Scenario tables, planned;
-  };
-  std::optional<SetAside> set_aside;  ///< of the live patient during a replay
-
-  std::jthread thread;  ///< last member, so that it starts when the others exist
-
-  void run(const std::stop_token& stop);
-  [[nodiscard]] ShownImage kind() const;
-  void follow_tracker(ImageMaker& maker);
-};
-
-/// The kind of picture to make. The mutex must be held.
-ShownImage ImageDesk::Parts::kind() const {
-  if (shown != ShownImage::none || !is_serving) return shown;
-  return tables.ultrasound.array == UltrasoundArray::sagittal ? ShownImage::sagittal : ShownImage::transverse;
-}
-
-/// Moves the probe to a new tracked pose. The mutex must be held.
-void ImageDesk::Parts::follow_tracker(ImageMaker& maker) {
-  if (!std::exchange(is_moved, false) || !tracked) return;
-  const auto seat = maker.seat();
-  probe_problem = seat ? follow(*tracked, *seat, tables) : seat.error().what + ". " + seat.error().cure + ".";
-}
-
-/// Takes up what has come, makes a picture of it, and waits until the next one is due.
-void ImageDesk::Parts::run(const std::stop_token& stop) {
-  ImageMaker maker;
-  while (!stop.stop_requested()) {
-    std::variant<std::monostate, LoopState, Moment> state;
-    {
-      std::unique_lock lock(mutex);
-      const bool go_on = wake.wait(lock, stop, [&] {
-        return kind() != ShownImage::none && (is_changed || patient || !std::holds_alternative<std::monostate>(newest));
-      });
-      if (!go_on) return;
-      if (patient) maker.open(*std::exchange(patient, std::nullopt));
-      follow_tracker(maker);
-      maker.set(kind(), tables, is_serving);
-      is_changed = false;
-      state = std::exchange(newest, std::monostate{});
-    }
-    const auto begun = std::chrono::steady_clock::now();
-    const auto tell = [&](const std::string& what) {
-      const std::lock_guard lock(mutex);
-      stage = what;
-    };
-    if (const auto* loop = std::get_if<LoopState>(&state))
-      maker.take(loop->time_s, loop->forces, loop->needle, loop->seeds);
-    if (auto* moment = std::get_if<Moment>(&state)) maker.take(std::move(*moment));
-    auto image = maker.make(tell);
-    {
-      const std::lock_guard lock(mutex);
-      stage.clear();
-      problem = image ? maker.remark() : image.error().what + ". " + image.error().cure + ".";
-      made = image ? *std::move(image) : nullptr;
-    }
-    std::unique_lock lock(mutex);
-    wake.wait_until(lock, stop, begun + kImageEvery, [] { return false; });
-  }
-}
-
-ImageDesk::ImageDesk() : parts_(std::make_unique<Parts>()) {}
-ImageDesk::~ImageDesk() = default;
-
-void ImageDesk::open(ImageSubject patient) {
-  const std::lock_guard lock(parts_->mutex);
-  parts_->is_probe_moved = false;
-  if (patient.is_recorded && !parts_->set_aside) parts_->set_aside = {parts_->tables, parts_->planned};
-  if (!patient.is_recorded && parts_->set_aside) {
-    parts_->tables = std::move(parts_->set_aside->tables);
-    parts_->planned = std::move(parts_->set_aside->planned);
-    parts_->set_aside.reset();
-  }
-  // Another needle in the same patient leaves the probe where it is.
-  if (!has_same_tables(parts_->planned, patient.scenario)) take_tables(parts_->tables, patient.scenario);
-  parts_->planned = patient.scenario;
-  parts_->patient = std::move(patient);
-  parts_->is_moved = true;
-  parts_->newest = std::monostate{};
-  parts_->wake.notify_all();
-}
-
-void ImageDesk::show(ShownImage shown) {
-  shown_ = shown;
-  const std::lock_guard lock(parts_->mutex);
-  parts_->shown = shown;
-  parts_->is_changed = true;
-  if (!is_busy()) parts_->problem.clear();
-  parts_->wake.notify_all();
-}
-
-void ImageDesk::serve(bool companion) {
-  if (std::exchange(is_serving_, companion) == companion) return;
-  const std::lock_guard lock(parts_->mutex);
-  parts_->is_serving = companion;
-  if (!is_busy()) parts_->problem.clear();
-  parts_->is_changed = true;
-  parts_->wake.notify_all();
-}
-
-void ImageDesk::track(const std::optional<Pose>& pose) {
-  const std::lock_guard lock(parts_->mutex);
-  std::optional<Pose>& tracked = parts_->tracked;
-  const bool is_same = pose && tracked
-                           ? pose->origin == tracked->origin && pose->rotation.coeffs() == tracked->rotation.coeffs()
-                           : pose.has_value() == tracked.has_value();
-  if (is_same) return;
-  is_tracked_ = pose.has_value();
-  tracked = pose;
-  if (!tracked) parts_->probe_problem.clear();
-  parts_->is_moved = parts_->is_changed = true;
-  parts_->wake.notify_all();
-}
-
-Result<> ImageDesk::set(const std::string& key, double value) {
-  if (!is_of_pictures(key))
-    return input_error(key, "it is not a key of the pictures", "Set a key of [probe], [ultrasound] or [fluoroscopy]");
-  const std::lock_guard lock(parts_->mutex);
-  if (parts_->tracked && is_of_stepper(key))
-    return input_error(key, "a tracker moves the probe", "Move the tracked probe, or disconnect the tracker");
-  const ScenarioValue as_number{.type = ScenarioValue::Type::number, .number = value};
-  if (auto done = set_scenario_key(parts_->tables, key, as_number, key); !done) return done;
-  parts_->is_probe_moved = parts_->is_probe_moved || key.starts_with("probe.");
-  parts_->is_changed = true;
-  parts_->wake.notify_all();
-  return Ok{};
-}
-
-void ImageDesk::take(const Snapshot& snapshot, std::vector<ShownSeed> seeds) {
+LoopState loop_state(const Snapshot& snapshot) {
   LoopState state;
   state.time_s = snapshot.step.time_s;
   state.forces.resize(Snapshot::kForces);
   state.forces.resize(tissue_forces(snapshot, state.forces).size());
   for (const Triple& point : snapshot.centreline) state.needle.centreline_mm.push_back(vec3(point));
-  state.seeds = std::move(seeds);
-  const std::lock_guard lock(parts_->mutex);
-  parts_->newest = std::move(state);
-  parts_->wake.notify_all();
+  return state;
+}
+
+/// The kind of picture to make. The mutex must be held.
+ShownImage ImageDesk::kind() const {
+  if (shown_ != ShownImage::none || !is_serving_) return shown_;
+  return tables_.tables().ultrasound.array == UltrasoundArray::sagittal ? ShownImage::sagittal : ShownImage::transverse;
+}
+
+/// Takes up what has come, makes a picture of it, and waits until the next one is due.
+void ImageDesk::run(const std::stop_token& stop) {
+  ImageMaker maker;
+  while (!stop.stop_requested()) {
+    std::variant<std::monostate, LoopState, Moment> state;
+    {
+      std::unique_lock lock(mutex_);
+      const bool go_on = wake_.wait(lock, stop, [&] {
+        return kind() != ShownImage::none &&
+               (is_changed_ || patient_ || !std::holds_alternative<std::monostate>(newest_));
+      });
+      if (!go_on) return;
+      if (patient_) maker.open(*std::exchange(patient_, std::nullopt));
+      if (tables_.is_moved()) tables_.follow(maker.seat());
+      maker.set(kind(), tables_.tables(), is_serving_);
+      is_changed_ = false;
+      state = std::exchange(newest_, std::monostate{});
+    }
+    const auto begun = std::chrono::steady_clock::now();
+    const auto tell = [&](const std::string& what) {
+      const std::lock_guard lock(mutex_);
+      stage_ = what;
+    };
+    if (const auto* loop = std::get_if<LoopState>(&state))
+      maker.take(loop->time_s, loop->forces, loop->needle, loop->seeds);
+    if (auto* moment = std::get_if<Moment>(&state)) maker.take(std::move(*moment));
+    auto image = maker.make(tell);
+    std::unique_lock lock(mutex_);
+    stage_.clear();
+    problem_ = image ? maker.remark() : image.error().what + ". " + image.error().cure + ".";
+    made_ = image ? *std::move(image) : nullptr;
+    wake_.wait_until(lock, stop, begun + kImageEvery, [] { return false; });
+  }
+}
+
+ImageDesk::ImageDesk() : thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+/// Changes something that the thread takes up.
+void ImageDesk::change(const std::function<void()>& what) {
+  const std::lock_guard lock(mutex_);
+  what();
+  wake_.notify_all();
+}
+
+void ImageDesk::open(ImageSubject patient) {
+  change([&] {
+    tables_.open(patient.scenario, patient.is_recorded);
+    patient_ = std::move(patient);
+    newest_ = std::monostate{};
+  });
+}
+
+void ImageDesk::show(ShownImage shown) {
+  change([&] {
+    shown_ = shown;
+    is_changed_ = true;
+    if (!is_busy()) problem_.clear();
+  });
+}
+
+void ImageDesk::serve(bool companion) {
+  if (is_serving_ == companion) return;
+  change([&] {
+    is_serving_ = companion;
+    is_changed_ = true;
+    if (!is_busy()) problem_.clear();
+  });
+}
+
+void ImageDesk::track(const std::optional<Pose>& pose) {
+  change([&] { is_changed_ = tables_.track(pose) || is_changed_; });
+}
+
+Result<> ImageDesk::set(const std::string& key, double value) {
+  Result<> done = Ok{};
+  change([&] {
+    done = tables_.set(key, value);
+    is_changed_ = done.ok() || is_changed_;
+  });
+  return done;
+}
+
+void ImageDesk::take(LoopState state) {
+  change([&] { newest_ = std::move(state); });
 }
 
 void ImageDesk::take(Moment moment, const std::optional<ProbeSettings>& probe) {
-  const std::lock_guard lock(parts_->mutex);
-  if (probe && !parts_->is_probe_moved) parts_->tables.probe = *probe;
-  parts_->newest = std::move(moment);
-  parts_->wake.notify_all();
+  change([&] {
+    if (probe) tables_.take_recorded(*probe);
+    newest_ = std::move(moment);
+  });
 }
 
 ProbeSettings ImageDesk::probe() const {
-  const std::lock_guard lock(parts_->mutex);
-  return parts_->tables.probe;
+  const std::lock_guard lock(mutex_);
+  return tables_.tables().probe;
 }
 
 std::shared_ptr<const LiveImage> ImageDesk::news() {
-  const std::lock_guard lock(parts_->mutex);
-  return std::exchange(parts_->made, nullptr);
+  const std::lock_guard lock(mutex_);
+  return std::exchange(made_, nullptr);
 }
 
-std::string ImageDesk::problem() const {
-  const std::lock_guard lock(parts_->mutex);
-  return parts_->problem;
-}
-
-std::string ImageDesk::stage() const {
-  const std::lock_guard lock(parts_->mutex);
-  return parts_->stage;
-}
-
-std::string ImageDesk::probe_problem() const {
-  const std::lock_guard lock(parts_->mutex);
-  return parts_->probe_problem;
+ImageDesk::Report ImageDesk::report() const {
+  const std::lock_guard lock(mutex_);
+  return {problem_, stage_, tables_.probe_problem()};
 }
 
 }  // namespace stylet::serve

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "image_tables.hpp"
 #include "stylet/imaging/moment.hpp"
 #include "stylet/realtime/snapshot.hpp"
 #include "stylet/serve/image_picture.hpp"
@@ -8,11 +9,13 @@
 #include "stylet/sim/scenario.hpp"
 
 #include <condition_variable>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
+#include <variant>
 #include <vector>
 
 namespace stylet::serve {
@@ -26,15 +29,24 @@ struct ImageSubject {
   bool is_recorded = false;                     ///< the patient of a replay
 };
 
+/// The state of the loop that a picture needs.
+struct LoopState {
+  double time_s = 0.0;
+  std::vector<TissueForce> forces;
+  ShownNeedle needle;
+  std::vector<ShownSeed> seeds;  ///< where they are now
+};
+/// The same without seeds.
+LoopState loop_state(const Snapshot& snapshot);
+
 /// Makes ultrasound and X-ray pictures of the newest moment, one after the other, in a thread of its own. Moments that
 /// come while a picture is being made replace each other. The other calls come from one thread.
 class ImageDesk {
  public:
   ImageDesk();
-  ~ImageDesk();
 
-  /// Takes up another patient; the settings of the probe, scanner and C-arm become those of its scenario. After a
-  /// replay, those from before it are back.
+  /// Takes up another patient; the settings of the probe, scanner and C-arm become those of its scenario
+  /// (ImageTables::open()).
   void open(ImageSubject patient);
   /// The kind of picture that the pages look at.
   void show(ShownImage shown);
@@ -44,15 +56,14 @@ class ImageDesk {
   void serve(bool companion);
   /// Whether pictures are made.
   [[nodiscard]] bool is_busy() const { return shown_ != ShownImage::none || is_serving_; }
-  /// Sets a key of [probe], [ultrasound] or [fluoroscopy]. Errors: another key; a value out of range; a motion of the
-  /// stepper while a tracker moves the probe.
+  /// ImageTables::set()
   Result<> set(const std::string& key, double value);
-  /// The pose to which a tracker moves the probe; empty: no tracker does, and the probe stays until set() moves it.
+  /// ImageTables::track()
   void track(const std::optional<Pose>& pose);
-  [[nodiscard]] bool is_tracked() const { return is_tracked_; }
+  [[nodiscard]] bool is_tracked() const { return tables_.is_tracked(); }
 
-  /// The newest moment of the loop. @param seeds where they are now
-  void take(const Snapshot& snapshot, std::vector<ShownSeed> seeds);
+  /// The newest moment of the loop.
+  void take(LoopState state);
   /// The newest moment of a replay.
   /// @param probe where it was then, which holds until a page moves the probe; empty: there was none
   void take(Moment moment, const std::optional<ProbeSettings>& probe);
@@ -61,19 +72,29 @@ class ImageDesk {
 
   /// The newest picture; null if there is none since the last call.
   std::shared_ptr<const LiveImage> news();
-  /// Why no picture can be made of this patient, or why its probe moves nothing in the pictures; empty: all is well.
-  [[nodiscard]] std::string problem() const;
-  /// The part that is being prepared; empty: nothing.
-  [[nodiscard]] std::string stage() const;
-  /// Where the probe does not do what the tracker's pose says; empty: it does.
-  [[nodiscard]] std::string probe_problem() const;
+  /// Why no picture can be made of this patient, or why its probe moves nothing in the pictures; the part that is being
+  /// prepared; where the probe does not do what the tracker's pose says. Empty: all is well.
+  struct Report {
+    std::string problem, stage, probe_problem;
+  };
+  [[nodiscard]] Report report() const;
 
  private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
+  void run(const std::stop_token& stop);
+  [[nodiscard]] ShownImage kind() const;
+  void change(const std::function<void()>& what);
+
+  mutable std::mutex mutex_;  ///< guards the members below; this object's thread does not write shown_ and is_serving_
+  std::condition_variable_any wake_;
+  std::optional<ImageSubject> patient_;  ///< taken by the thread
+  ImageTables tables_;
   ShownImage shown_ = ShownImage::none;
-  bool is_serving_ = false;
-  bool is_tracked_ = false;
+  bool is_serving_ = false;  ///< a companion wants pictures
+  bool is_changed_ = false;  ///< the tables or the kind of picture
+  std::variant<std::monostate, LoopState, Moment> newest_;
+  std::shared_ptr<const LiveImage> made_;
+  std::string problem_, stage_;
+  std::jthread thread_;  ///< last member, so that it starts when the others exist
 };
 
 }  // namespace stylet::serve

@@ -46,26 +46,21 @@ Result<std::unique_ptr<ImplantDesk>> ImplantDesk::open(std::shared_ptr<const Imp
   std::unique_ptr<ImplantDesk> desk(new ImplantDesk());
   desk->implant_ = implant;
   desk->fate_ = model->scenario().seed;
-  LivePlan& plan = desk->plan_;
+  desk->plan_.technique = model->scenario().procedure.technique;
+  RecordedPlan& plan = desk->plan_.plan;
   plan.seed_length_mm = implant->source.outer_length_mm;
   plan.seed_diameter_mm = implant->source.outer_diameter_mm;
-  plan.prescription_Gy =
-      implant->options.prescription_Gy > 0.0 ? implant->options.prescription_Gy : implant->plan.prescription_Gy;
+  plan.prescription_Gy = implant->prescription_Gy();
   plan.source = implant->source.name;
-  plan.technique = model->scenario().procedure.technique;
   std::vector<std::string> names;
   for (const NeedleLoad& load : implant->needles) {
     Result<InsertionPlan> insertion = needle_insertion(load, model->scenario(), model->locator(), where);
     if (!insertion) return insertion.error();
-    PlannedNeedle& needle = plan.needles.emplace_back();
-    needle.name = load.name;
-    needle.hole = hole_on(*insertion, *model);
-    needle.entry_mm = Vec3(insertion->entry_mm->data());
-    needle.direction = load.direction;
-    needle.depth_mm = insertion->depth_mm;
+    plan.needles.push_back({load.name, hole_on(*insertion, *model), Vec3(insertion->entry_mm->data()), load.direction,
+                            insertion->depth_mm});
     for (const LoadedSeed& seed : load.seeds) {
-      needle.seeds.push_back({seed.number, seed.planned_mm, seed.axis,
-                              drop_depth_mm(needle.depth_mm, seed, plan.seed_length_mm), seed.behind_tip_mm});
+      plan.seeds.push_back({seed.number, plan.needles.size() - 1, seed.planned_mm, seed.axis,
+                            drop_depth_mm(insertion->depth_mm, seed, plan.seed_length_mm)});
     }
     desk->state_.planned_seeds += load.seeds.size();
     desk->insertions_.push_back(*std::move(insertion));
@@ -80,10 +75,10 @@ Result<std::unique_ptr<ImplantDesk>> ImplantDesk::open(std::shared_ptr<const Imp
 }
 
 std::optional<std::size_t> ImplantDesk::needle_through(const std::string& hole) const {
-  const auto found = std::find_if(plan_.needles.begin(), plan_.needles.end(),
-                                  [&](const PlannedNeedle& needle) { return needle.hole == hole; });
-  if (hole.empty() || found == plan_.needles.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - plan_.needles.begin());
+  const auto& needles = plan().needles;
+  const auto found = std::ranges::find(needles, hole, &RecordedPlan::Needle::hole);
+  if (hole.empty() || found == needles.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - needles.begin());
 }
 
 std::optional<std::size_t> ImplantDesk::needle_of(const Model& model) const {
@@ -95,7 +90,7 @@ std::optional<std::size_t> ImplantDesk::needle_of(const Model& model) const {
 }
 
 void ImplantDesk::set_current(std::optional<std::size_t> needle) {
-  plan_.current = needle ? static_cast<int>(*needle) : -1;
+  plan_.plan.current = needle ? static_cast<int>(*needle) : -1;
   plan_changed_ = true;
 }
 
@@ -106,27 +101,26 @@ void ImplantDesk::set_train(std::optional<double> from_mm) {
 
 std::vector<double> ImplantDesk::train_mm() const {
   std::vector<double> behind;
-  if (plan_.current < 0) return behind;
-  const PlannedNeedle& needle = plan_.needles[static_cast<std::size_t>(plan_.current)];
-  for (std::size_t k = seeds_of_current().size(); k < needle.seeds.size(); ++k)
-    behind.push_back(needle.seeds[k].behind_tip_mm);
+  if (plan().current < 0) return behind;
+  const std::vector<LoadedSeed>& seeds = present().seeds;
+  for (std::size_t k = seeds_of_current().size(); k < seeds.size(); ++k) behind.push_back(seeds[k].behind_tip_mm);
   return behind;
 }
 
 std::vector<std::size_t> ImplantDesk::seeds_of_current() const {
   std::vector<std::size_t> own;
   for (std::size_t k = 0; k < state_.seeds.size(); ++k) {
-    if (static_cast<int>(state_.seeds[k].needle) == plan_.current) own.push_back(k);
+    if (static_cast<int>(state_.seeds[k].needle) == plan().current) own.push_back(k);
   }
   return own;
 }
 
-Result<PlannedSeed> ImplantDesk::next_seed() const {
-  if (plan_.current < 0) {
+Result<LoadedSeed> ImplantDesk::next_seed() const {
+  if (plan().current < 0) {
     return input_error("the needle", "the plan has no seeds for this hole, so there is none to drop",
                        "Choose a needle of the plan");
   }
-  const PlannedNeedle& needle = plan_.needles[static_cast<std::size_t>(plan_.current)];
+  const NeedleLoad& needle = present();
   const std::size_t dropped = seeds_of_current().size();
   if (dropped >= needle.seeds.size()) {
     return input_error("needle " + needle.name, fmt::format("all its {} seeds have been dropped", needle.seeds.size()),
@@ -136,15 +130,15 @@ Result<PlannedSeed> ImplantDesk::next_seed() const {
 }
 
 Result<SeedHistory> ImplantDesk::add(const ProbedDrop& drop) {
-  const Result<PlannedSeed> seed = next_seed();
+  const Result<LoadedSeed> seed = next_seed();
   if (!seed) return seed.error();
   if (!drop.tip_in_tissue) {
-    return input_error("needle " + plan_.needles[static_cast<std::size_t>(plan_.current)].name,
-                       "its tip is not in the tissue, so no seed was dropped", "Push the needle in first");
+    return input_error("needle " + present().name, "its tip is not in the tissue, so no seed was dropped",
+                       "Push the needle in first");
   }
   SeedHistory h;
   h.number = seed->number;
-  h.needle = static_cast<std::size_t>(plan_.current);
+  h.needle = static_cast<std::size_t>(plan().current);
   h.planned_mm = seed->planned_mm;
   h.dropped_mm = vec3(drop.place);
   h.rest_mm = vec3(drop.rest);
@@ -178,7 +172,7 @@ void ImplantDesk::clear() {
 /// same random numbers however many follow, so that only a strand moves seeds that were there before.
 void ImplantDesk::settle() {
   state_.seeds = dropped_;
-  for (std::size_t needle = 0; needle < plan_.needles.size(); ++needle) {
+  for (std::size_t needle = 0; needle < plan().needles.size(); ++needle) {
     std::vector<SeedHistory> own;
     for (const SeedHistory& seed : dropped_) {
       if (seed.needle == needle) own.push_back(seed);
@@ -213,7 +207,7 @@ void ImplantDesk::show_again() { plan_changed_ = state_changed_ = grid_changed_ 
 
 ImplantDesk::Changes ImplantDesk::take_changes() {
   if (const auto ready = models_->news()) {
-    for (std::size_t k = 0; k < ready->size(); ++k) plan_.needles[k].is_ready = (*ready)[k];
+    plan_.ready = *ready;
     plan_changed_ = true;
   }
   ImplantDose::News news = dose_->news();

@@ -22,9 +22,15 @@ class ImplantDesk {
   static Result<std::unique_ptr<ImplantDesk>> open(std::shared_ptr<const ImplantCase> implant,
                                                    const std::shared_ptr<const Model>& model, const std::string& where);
 
-  [[nodiscard]] const LivePlan& plan() const { return plan_; }
+  [[nodiscard]] const RecordedPlan& plan() const { return plan_.plan; }
+  /// The same with the needles that are ready.
+  [[nodiscard]] const ShownPlan& shown_plan() const { return plan_; }
+  [[nodiscard]] const Scenario::Seed& fate() const { return fate_; }
   [[nodiscard]] const LiveImplant& state() const { return state_; }
   [[nodiscard]] NeedleModels& models() { return *models_; }
+  /// Ends the work on models at the next report of progress. done(): it has ended.
+  void give_up() { models_->give_up(); }
+  [[nodiscard]] bool done() const { return models_->done(); }
   /// The insertions of the plan's needles, in the order of the procedure.
   [[nodiscard]] const std::vector<InsertionPlan>& insertions() const { return insertions_; }
   /// The needle of the plan through a hole of the template; empty if the plan has none there.
@@ -42,8 +48,7 @@ class ImplantDesk {
   void set_train(std::optional<double> from_mm);
 
   /// The seed that the present needle drops next. Errors: the needle is beside the plan, or it is empty.
-  [[nodiscard]] Result<PlannedSeed> next_seed() const;
-  [[nodiscard]] double seed_length_mm() const { return plan_.seed_length_mm; }
+  [[nodiscard]] Result<LoadedSeed> next_seed() const;
 
   /// Adds the seed that the present needle has left. It jumps, keeps to its strand or is lost as `[seed]` of the
   /// scenario wants (settle_seeds()), with the same random numbers as in stylet implant.
@@ -77,11 +82,14 @@ class ImplantDesk {
   ImplantDesk() = default;
   void seeds_have_changed();
   void settle();
+  [[nodiscard]] const NeedleLoad& present() const {
+    return implant_->needles[static_cast<std::size_t>(plan().current)];
+  }
 
   std::shared_ptr<const ImplantCase> implant_;
   std::vector<InsertionPlan> insertions_;
   Scenario::Seed fate_;  ///< the fate of seeds after their drop
-  LivePlan plan_;
+  ShownPlan plan_;
   std::vector<SeedHistory> dropped_;  ///< as dropped, before they settle; in the order of the drops
   LiveImplant state_;
   bool plan_changed_ = true;

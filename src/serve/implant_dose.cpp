@@ -114,8 +114,6 @@ Result<std::unique_ptr<ImplantDose>> ImplantDose::open(std::shared_ptr<const Imp
 
 ImplantDose::ImplantDose(std::shared_ptr<const ImplantCase> implant, Tg43 tg43)
     : implant_(std::move(implant)),
-      prescription_Gy_(implant_->options.prescription_Gy > 0.0 ? implant_->options.prescription_Gy
-                                                               : implant_->plan.prescription_Gy),
       table_(std::move(tg43)),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
@@ -145,13 +143,15 @@ bool ImplantDose::is_newest(const Wanted& wanted) {
 ImplantScore ImplantDose::score(const Structure& target, std::size_t seeds) const {
   const DoseVolume dvh(target.field.dose_Gy(), target.volume_mm3);
   constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+  const double prescription_Gy = implant_->prescription_Gy();
   ImplantScore score{.seeds = seeds, .d90_Gy = dvh.dose_of_percent(90.0)};
-  score.d90_percent = prescription_Gy_ > 0.0 ? 100.0 * score.d90_Gy / prescription_Gy_ : nothing;
-  score.v100_percent = prescription_Gy_ > 0.0 ? dvh.percent_above(prescription_Gy_) : nothing;
+  score.d90_percent = prescription_Gy > 0.0 ? 100.0 * score.d90_Gy / prescription_Gy : nothing;
+  score.v100_percent = prescription_Gy > 0.0 ? dvh.percent_above(prescription_Gy) : nothing;
   return score;
 }
 
 std::vector<JudgedGoal> ImplantDose::judge(const std::vector<Structure>& structures) const {
+  const double prescription_Gy = implant_->prescription_Gy();
   std::vector<JudgedGoal> judged;
   for (const DoseGoal& goal : implant_->options.goals) {
     JudgedGoal row{goal, std::nullopt, false};
@@ -160,7 +160,7 @@ std::vector<JudgedGoal> ImplantDose::judge(const std::vector<Structure>& structu
       return s.region == goal.structure || s.name == goal.structure;
     });
     if (metric && of != structures.end())
-      row.value = figure_of(*metric, DoseVolume(of->field.dose_Gy(), of->volume_mm3), prescription_Gy_);
+      row.value = figure_of(*metric, DoseVolume(of->field.dose_Gy(), of->volume_mm3), prescription_Gy);
     row.met = row.value && meets(goal, *row.value);
     judged.push_back(std::move(row));
   }
@@ -197,13 +197,13 @@ void ImplantDose::compute(const Wanted& wanted) {
   if (!is_newest(wanted)) return;
   now.goals = judge(structures_);
   std::shared_ptr<LiveDose> grid;
-  if (prescription_Gy_ > 0.0) {
+  if (const double prescription_Gy = implant_->prescription_Gy(); prescription_Gy > 0.0) {
     grid_->bring_to(table_, wanted.seeds);
     grid = std::make_shared<LiveDose>(empty_grid_);
     grid->values.reserve(grid_->dose_Gy().size());
     constexpr double most = std::numeric_limits<std::uint16_t>::max();
     for (const double dose : grid_->dose_Gy()) {
-      const double value = 100.0 * dose / prescription_Gy_ / grid->unit_percent;
+      const double value = 100.0 * dose / prescription_Gy / grid->unit_percent;
       grid->values.push_back(static_cast<std::uint16_t>(std::clamp(std::round(value), 0.0, most)));
     }
   }

@@ -63,7 +63,6 @@ class ImplantDose {
   [[nodiscard]] ImplantScore score(const Structure& target, std::size_t seeds) const;
 
   std::shared_ptr<const ImplantCase> implant_;
-  double prescription_Gy_;
   // Used by the thread only.
   RateTable table_;
   std::vector<Structure> structures_;  ///< the target first

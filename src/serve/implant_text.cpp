@@ -97,23 +97,24 @@ std::string text_of_implant(const ImplantJson& json) {
 
 }  // namespace
 
-std::string plan_text(const LivePlan& plan) {
+std::string plan_text(const ShownPlan& shown) {
+  const RecordedPlan& plan = shown.plan;
   ImplantJson needles = ImplantJson::array();
-  for (const PlannedNeedle& needle : plan.needles) {
-    ImplantJson seeds = ImplantJson::array();
-    for (const PlannedSeed& seed : needle.seeds) {
-      seeds.push_back({{"number", seed.number},
-                       {"planned_mm", place_json(seed.planned_mm)},
-                       {"axis", place_json(seed.axis)},
-                       {"drop_depth_mm", seed.drop_depth_mm}});
-    }
+  for (std::size_t k = 0; k < plan.needles.size(); ++k) {
+    const RecordedPlan::Needle& needle = plan.needles[k];
     needles.push_back({{"name", needle.name},
                        {"hole", needle.hole},
                        {"entry_mm", place_json(needle.entry_mm)},
                        {"direction", place_json(needle.direction)},
                        {"depth_mm", needle.depth_mm},
-                       {"ready", needle.is_ready},
-                       {"seeds", seeds}});
+                       {"ready", k < shown.ready.size() && shown.ready[k]},
+                       {"seeds", ImplantJson::array()}});
+  }
+  for (const RecordedPlan::Seed& seed : plan.seeds) {
+    needles[seed.needle]["seeds"].push_back({{"number", seed.number},
+                                             {"planned_mm", place_json(seed.planned_mm)},
+                                             {"axis", place_json(seed.axis)},
+                                             {"drop_depth_mm", seed.drop_depth_mm}});
   }
   return text_of_implant({{"needles", needles},
                           {"current", plan.current},
@@ -121,7 +122,7 @@ std::string plan_text(const LivePlan& plan) {
                           {"seed_diameter_mm", plan.seed_diameter_mm},
                           {"prescription_Gy", plan.prescription_Gy},
                           {"source", plan.source},
-                          {"technique", plan.technique == SeedTechnique::preloaded ? "preloaded" : "pushed"}});
+                          {"technique", shown.technique == SeedTechnique::preloaded ? "preloaded" : "pushed"}});
 }
 
 std::string implant_text(const LiveImplant& implant) {

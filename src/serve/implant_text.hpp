@@ -8,7 +8,7 @@
 namespace stylet::serve {
 
 // The JSON texts of the messages about an implant (docs/live_protocol.md).
-std::string plan_text(const LivePlan& plan);
+std::string plan_text(const ShownPlan& shown);
 std::string implant_text(const LiveImplant& implant);
 std::string seeds_text(const LiveSeeds& seeds);
 

@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "folder_lock.hpp"
 #include "hand.hpp"
+#include "live_recording.hpp"
+#include "live_view.hpp"
 #include "pick_up.hpp"
-#include "rests.hpp"
-#include "scene_points.hpp"
-#include "seed_follower.hpp"
-#include "seed_journal.hpp"
-#include "stylet/io/run_recorder.hpp"
 #include "stylet/realtime/runner.hpp"
 #include "stylet/serve/companion.hpp"
-#include "stylet/serve/picture.hpp"
-#include "stylet/sim/display_field.hpp"
-#include "stylet/sim/display_near_field.hpp"
 
 #include <filesystem>
 #include <functional>
@@ -23,22 +16,6 @@
 #include <vector>
 
 namespace stylet::serve {
-
-/// An open model and what is needed to show it.
-struct OpenModel {
-  std::shared_ptr<const Model> model;
-  std::vector<std::string> notes;             ///< LoadedCase::notes
-  std::shared_ptr<const DisplayField> field;  ///< empty until it is prepared
-  ScenePoints points;                         ///< points of the scene
-  std::size_t way = 0;  ///< index of the insertion along whose planned path the scene is drawn finer
-
-  /// All warnings for the user: the notes, then the model's warnings.
-  [[nodiscard]] std::vector<std::string> warnings() const {
-    std::vector<std::string> all = notes;
-    all.insert(all.end(), model->warnings().begin(), model->warnings().end());
-    return all;
-  }
-};
 
 /// One insertion of the live page: the real-time loop, from the needle in front of the skin until the next insertion
 /// starts, and its recording. All calls from one thread.
@@ -54,7 +31,6 @@ class LiveRun {
                                                 double recorded_frames_per_s, std::unique_ptr<Device> other,
                                                 const RecordedPlan* plan = nullptr);
 
-  ~LiveRun();  ///< completes the recording
   LiveRun(const LiveRun&) = delete;
   LiveRun& operator=(const LiveRun&) = delete;
 
@@ -73,12 +49,11 @@ class LiveRun {
   [[nodiscard]] RealtimeRunner& runner() { return *runner_; }
   /// Drops and follows the seeds of an implant.
   [[nodiscard]] SeedFollower& seeds() { return seeds_; }
-  /// Records what has changed of the implant since the last call (SeedJournal::news()), and the next picture.
+  /// Records what has changed of the implant since the last call, and the next picture.
   void record_implant(const LiveImplant& implant, bool score_is_current);
-  /// Records where the stepper holds the probe, if there is one and it has moved since the last call.
-  void record_probe(const ProbeSettings& probe);
-  /// Records a frame of the next picture, although the last one was recorded a short time ago.
-  void record_next_picture() { next_frame_s_ = 0.0; }
+  void record_probe(const ProbeSettings& probe) { recording_.add(probe, time_s_); }
+  /// RecordedFrames::hurry()
+  void record_next_picture() { frames_.hurry(); }
 
   /// The hand at a page; null if another device moves the needle.
   [[nodiscard]] const std::shared_ptr<PageDevice>& hand() const { return hand_; }
@@ -86,52 +61,29 @@ class LiveRun {
   [[nodiscard]] std::string device_problem(const Companion& companion) const;
   [[nodiscard]] SessionStatus::Loop loop() const;
   /// Completes and ends the recording; the loop continues.
-  void stop_recording(const std::string& why);
-  [[nodiscard]] const std::string& recording_problem() const { return problem_; }
+  void stop_recording(const std::string& why) { recording_.stop(why); }
+  [[nodiscard]] const std::string& recording_problem() const { return recording_.problem(); }
   [[nodiscard]] double time_s() const { return time_s_; }
   /// Regions that contained the needle in the last picture, the region of the tip first.
   [[nodiscard]] std::vector<std::string> inside() const;
 
  private:
   LiveRun(const OpenModel& open, std::size_t insertion, double recorded_frames_per_s);
-  void record(const Result<>& done);
-  void record_step(const std::optional<Step>& step);
-  void record_frame(const Snapshot& snapshot);
-  [[nodiscard]] bool displacement_is_due() const;
-  void compute_displacement();
 
-  OpenModel open_;
+  std::shared_ptr<const Model> model_;
   const PlannedInsertion& plan_;  ///< part of the model
   std::shared_ptr<PageDevice> hand_;
   std::shared_ptr<PickUp> other_;  ///< either hand_ or other_ is set; it moves the needle
   SeedFollower seeds_;
   std::unique_ptr<RealtimeRunner> runner_;
-  FolderLock in_use_;  ///< locks the folder of the recording
-  std::unique_ptr<RunRecorder> recorder_;
-  Rests rests_;
-  SeedJournal journal_;
-  std::string problem_;                     ///< why nothing is recorded
-  std::optional<DisplayField::Load> load_;  ///< set if there is a field
-  DisplayNearField near_;                   ///< near field at the points of the scene
-  DisplayNearField near_nodes_;             ///< near field at the nodes of the mesh, for the recording
-  Eigen::Matrix3Xf shown_;                  ///< [mm] (3 × points of the scene) the displacement that is shown
-  bool seen_ = false;                       ///< a snapshot has been fetched
-  bool owed_ = false;                       ///< the displacement of the newest snapshot has not been computed
-  bool shown_anew_ = false;                 ///< shown_ has changed since show_to()
-  std::vector<Index> all_nodes_;            ///< all node indices of the mesh
-  std::vector<TissueForce> room_;           ///< buffer for forces
-  std::vector<Step> step_room_;             ///< buffer for steps
-  std::vector<Step> unsent_;                ///< steps since the last picture
-  std::vector<Step> curve_;                 ///< steps since the start, thinned
+  LiveRecording recording_;
+  RecordedFrames frames_;
+  TissueView view_;
+  LiveCurve curve_;
+  bool seen_ = false;                    ///< a snapshot has been fetched
+  std::vector<TissueForce> force_room_;  ///< buffer for forces
+  std::vector<Step> step_room_;          ///< buffer for steps
   double time_s_ = 0.0;
-  double frame_every_s_;                     ///< least simulated time between recorded frames
-  double next_frame_s_ = 0.0;                ///< simulated time of the next recorded frame
-  std::optional<Frame> last_frame_;          ///< the last recorded frame
-  std::optional<ProbeSettings> last_probe_;  ///< that was recorded
-  Pose last_base_;                           ///< base in last_frame_
-  double last_force_N_ = 0.0;                ///< axial force in last_frame_
-  double resting_until_s_ = 0.0;             ///< nothing has moved from last_frame_ until this simulated time
-  double picture_after_s_ = 0.0;  ///< wall-clock time after which the next displacement is computed for the page
 };
 
 }  // namespace stylet::serve

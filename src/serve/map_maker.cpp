@@ -20,11 +20,7 @@ struct Unwanted {};
 }  // namespace
 
 MapMaker::MapMaker(const std::shared_ptr<const Model>& model, PlanOfHole plan_of)
-    : plan_of_(std::move(plan_of)),
-      scenario_(model->scenario()),
-      mesh_(model->mesh()),
-      own_(model->own_parts()),
-      thread_([this, model = model]() mutable {
+    : plan_of_(std::move(plan_of)), needles_(*model), thread_([this, model = model]() mutable {
         (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()),
                           kNiceOfMaps);  // the threads that it starts inherit it
         make(model);
@@ -98,7 +94,7 @@ void MapMaker::predict(std::size_t hole) {
   };
   std::optional<Result<Prediction>> predicted;
   try {
-    predicted = predict_hole(scenario_, mesh_, plan, targets_, progress, own_);
+    predicted = predict_hole(needles_.scenario, needles_.mesh, plan, targets_, progress, needles_.own);
   } catch (const Unwanted&) {
     return;
   } catch (const std::bad_alloc&) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "other_needles.hpp"
 #include "stylet/serve/picture.hpp"
 #include "stylet/sim/hole_map.hpp"
 
@@ -40,9 +41,7 @@ class MapMaker {
   void predict(std::size_t hole);
 
   PlanOfHole plan_of_;
-  Scenario scenario_;
-  TetMesh mesh_;
-  OwnParts own_;
+  OtherNeedles needles_;
   KnownTargets targets_;  ///< used by the thread only
   std::atomic<bool> given_up_ = false;
   std::atomic<bool> wanted_ = false;

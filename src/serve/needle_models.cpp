@@ -36,9 +36,7 @@ double megabytes_for_models() {
 
 NeedleModels::NeedleModels(const std::shared_ptr<const Model>& like, std::vector<InsertionPlan> plans,
                            std::vector<std::string> names)
-    : scenario_(like->scenario()),
-      mesh_(like->mesh()),
-      own_(like->own_parts()),
+    : needles_(*like),
       plans_(std::move(plans)),
       names_(std::move(names)),
       ready_(plans_.size()),
@@ -125,12 +123,9 @@ void NeedleModels::compile(std::size_t needle) {
   const Progress progress = [this](std::string_view /*stage*/, double /*fraction*/) {
     if (given_up_) throw NotNeeded();
   };
-  Scenario scenario = scenario_;
-  scenario.insertions = {plans_[needle]};
   std::optional<Ready> made;
   try {
-    auto model = Model::compile(scenario, mesh_, names_[needle], {}, progress);
-    if (model && own_.is_any()) model = (*model)->with(own_);
+    const auto model = needles_.compile(plans_[needle], names_[needle], progress);
     if (model) {
       made = Ready{*model, nullptr};
       if (auto field = DisplayField::prepare(*model, {}, progress)) made->field = std::move(*field);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "other_needles.hpp"
 #include "stylet/sim/display_field.hpp"
 
 #include <atomic>
@@ -59,9 +60,7 @@ class NeedleModels {
   void drop_farthest(std::size_t but);
   [[nodiscard]] std::size_t distance(std::size_t needle) const;
 
-  Scenario scenario_;
-  TetMesh mesh_;
-  OwnParts own_;
+  OtherNeedles needles_;
   std::vector<InsertionPlan> plans_;
   std::vector<std::string> names_;
   std::atomic<bool> given_up_ = false;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "replayed_seeds.hpp"
 
-#include "seed_journal.hpp"
-
 #include "stylet/geom/topology.hpp"
 
 namespace stylet::serve {
@@ -27,8 +25,6 @@ ReplayedSeeds::ReplayedSeeds(const Replay& replay) : replay_(replay) {
   const Locator locator(mesh, topology);
   for (const SeedAct& act : recorded().acts) at_.push_back(locator.find(act.seed.rest_mm).value_or(MaterialPoint{}));
 }
-
-LivePlan ReplayedSeeds::plan() const { return live_plan(recorded().plan); }
 
 std::optional<LiveImplant> ReplayedSeeds::news() {
   const RecordedImplant& implant = recorded();

@@ -19,7 +19,8 @@ class ReplayedSeeds {
   /// @param replay of a recording with an implant; it must outlive this object
   explicit ReplayedSeeds(const Replay& replay);
 
-  [[nodiscard]] LivePlan plan() const;
+  /// The recorded plan. No needle is ready, since none can be chosen.
+  [[nodiscard]] ShownPlan plan() const { return {recorded().plan}; }
   /// The acts that had been carried out until the present moment; empty if it is the same as at the last call.
   [[nodiscard]] std::optional<LiveImplant> news();
   /// Where the seeds of the last news() are now.

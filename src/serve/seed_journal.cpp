@@ -54,40 +54,4 @@ SeedJournal::News SeedJournal::news(const LiveImplant& implant, bool score_is_cu
   return out;
 }
 
-RecordedPlan recorded_plan(const LivePlan& plan) {
-  RecordedPlan out;
-  for (std::size_t k = 0; k < plan.needles.size(); ++k) {
-    const PlannedNeedle& needle = plan.needles[k];
-    out.needles.push_back({needle.name, needle.hole, needle.entry_mm, needle.direction, needle.depth_mm});
-    for (const PlannedSeed& seed : needle.seeds)
-      out.seeds.push_back({seed.number, k, seed.planned_mm, seed.axis, seed.drop_depth_mm});
-  }
-  out.current = plan.current;
-  out.seed_length_mm = plan.seed_length_mm;
-  out.seed_diameter_mm = plan.seed_diameter_mm;
-  out.prescription_Gy = plan.prescription_Gy;
-  out.source = plan.source;
-  return out;
-}
-
-LivePlan live_plan(const RecordedPlan& plan) {
-  LivePlan out;
-  for (const RecordedPlan::Needle& needle : plan.needles) {
-    PlannedNeedle& of = out.needles.emplace_back();
-    of.name = needle.name;
-    of.hole = needle.hole;
-    of.entry_mm = needle.entry_mm;
-    of.direction = needle.direction;
-    of.depth_mm = needle.depth_mm;
-  }
-  for (const RecordedPlan::Seed& seed : plan.seeds)
-    out.needles[seed.needle].seeds.push_back({seed.number, seed.planned_mm, seed.axis, seed.drop_depth_mm, 0.0});
-  out.current = plan.current;
-  out.seed_length_mm = plan.seed_length_mm;
-  out.seed_diameter_mm = plan.seed_diameter_mm;
-  out.prescription_Gy = plan.prescription_Gy;
-  out.source = plan.source;
-  return out;
-}
-
 }  // namespace stylet::serve

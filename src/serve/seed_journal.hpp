@@ -29,9 +29,4 @@ class SeedJournal {
   std::int64_t dose_after_ = -1;  ///< number of acts before the last dose
 };
 
-/// The plan as a recording has it.
-[[nodiscard]] RecordedPlan recorded_plan(const LivePlan& plan);
-/// The plan of a recording as pages show it. No needle is ready, since none can be chosen.
-[[nodiscard]] LivePlan live_plan(const RecordedPlan& plan);
-
 }  // namespace stylet::serve

@@ -2,13 +2,9 @@
 #include "stylet/serve/server.hpp"
 
 #include "access.hpp"
-#include "hand.hpp"
-#include "holding.hpp"
-#include "implant_text.hpp"
+#include "hall.hpp"
 #include "kept_token.hpp"
 #include "pages.hpp"
-#include "stylet/io/hole_map_io.hpp"
-#include "viewer.hpp"
 
 #include <fmt/format.h>
 #include <boost/asio/io_context.hpp>
@@ -16,9 +12,7 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/thread_pool.hpp>
-#include <nlohmann/json.hpp>
 
-#include <map>
 #include <thread>
 
 namespace stylet::serve {
@@ -30,100 +24,22 @@ using asio::ip::tcp;
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr auto kRequestTime = std::chrono::seconds(20);
 constexpr auto kAcceptAgain = std::chrono::milliseconds(200);
 constexpr std::size_t kRequestBytes = 16 * 1024;
-constexpr std::size_t kKeptEvents = 1000;
-
-std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
-Json json_of(const SessionStatus::Recording& recording) {
-  return {{"name", recording.name},
-          {"seconds", recording.seconds},
-          {"problem", recording.problem},
-          {"warning", recording.warning}};
-}
-
-const char* name_of(SessionStatus::State state) {
-  switch (state) {
-    case SessionStatus::State::loading:
-      return "loading";
-    case SessionStatus::State::ready:
-      return "ready";
-    case SessionStatus::State::failed:
-      break;
-  }
-  return "failed";
-}
-
-std::string map_text(const LiveMap& live) {
-  return text_of({{"map", live.map ? Json::parse(hole_map_json(*live.map)) : Json(nullptr)},
-                  {"why_not", live.why_not},
-                  {"predicted", live.predicted},
-                  {"predicting", live.predicting}});
-}
-
-std::optional<Request::Kind> request_kind(wire::Command::Do what) {
-  using enum wire::Command::Do;
-  switch (what) {
-    case hole:
-      return Request::Kind::hole;
-    case insertion:
-      return Request::Kind::insertion;
-    case reset:
-      return Request::Kind::reset;
-    case pause:
-      return Request::Kind::pause;
-    case resume:
-      return Request::Kind::resume;
-    case step:
-      return Request::Kind::step;
-    case open_case:
-      return Request::Kind::open_case;
-    case replay:
-      return Request::Kind::replay;
-    case live:
-      return Request::Kind::live;
-    case seek:
-      return Request::Kind::seek;
-    case play:
-      return Request::Kind::play;
-    case drawn:
-      return Request::Kind::drawn;
-    case needle:
-      return Request::Kind::needle;
-    case drop:
-      return Request::Kind::drop;
-    case undo:
-      return Request::Kind::undo;
-    case clear:
-      return Request::Kind::clear;
-    case predict:
-      return Request::Kind::predict;
-    case image:
-      return Request::Kind::image;
-    case set:
-      return Request::Kind::set;
-    case take:
-    case release:
-      break;
-  }
-  return std::nullopt;
-}
 
 }  // namespace
 
-/// Everything here happens in the thread of `io`, except the Audience's calls, which only post work to it.
-struct Server::Parts final : public Audience, public ViewerDesk {
+/// The connections: HTTP requests are answered, and those that become WebSockets are passed to the hall. Everything
+/// here happens in the thread of `io`.
+struct Server::Parts {
   Parts(ServerSettings settings_, Access access_)
       : settings(std::move(settings_)),
         access(std::move(access_)),
         acceptor(io),
         retry(io),
         pages(access, Shelf(settings.session.recordings, settings.session.archive)),
-        session(settings.session, *this) {}
+        hall(io, settings.session) {}
 
   ServerSettings settings;
   Access access;
@@ -131,184 +47,11 @@ struct Server::Parts final : public Audience, public ViewerDesk {
   tcp::acceptor acceptor;
   asio::steady_timer retry;
   Pages pages;
-  Holding holding;
-  std::map<std::uint64_t, std::shared_ptr<Viewer>> viewers;
   std::uint64_t last_id = 0;
-  std::shared_ptr<const Scene> scene;
-  std::string map;  ///< JSON text of the map; empty until there is a map
-  /// JSON texts of the plan, what has been carried out of it, and where its seeds are; empty until there is one.
-  std::map<wire::Kind, std::string> implant;
-  std::shared_ptr<const LiveDose> dose;
-  std::shared_ptr<const LiveImage> image;
-  SessionStatus status;
-  std::deque<std::string> events;  ///< JSON texts of the events since the start of the insertion
-  Session session;
+  Hall hall;
   std::thread thread;
   asio::thread_pool readers{1};  ///< last member, so that it ends before the members that its work uses
 
-  // Audience: called from the session's thread.
-  void show(std::shared_ptr<const Scene> made) override {
-    asio::post(io, [this, made = std::move(made)] {
-      scene = made;
-      events.clear();
-      for (const auto& [id, viewer] : each()) viewer->send(scene);
-    });
-  }
-  void show(std::shared_ptr<const LiveFrame> frame) override {
-    asio::post(io, [this, frame = std::move(frame)] {
-      for (const auto& [id, viewer] : each()) viewer->send(frame);
-    });
-  }
-  void show(const LiveMap& now) override {
-    asio::post(io, [this, text = map_text(now)] {
-      map = text;
-      for (const auto& [id, viewer] : each()) viewer->send(wire::Kind::map, map);
-    });
-  }
-  void show(const LivePlan& now) override {
-    if (now.needles.empty()) {
-      asio::post(io, [this] {
-        implant.clear();
-        dose.reset();
-      });
-    }
-    show_text(wire::Kind::plan, plan_text(now));
-  }
-  void show(const LiveImplant& now) override { show_text(wire::Kind::implant, implant_text(now)); }
-  void show(const LiveSeeds& now) override { show_text(wire::Kind::seeds, seeds_text(now)); }
-  void show(std::shared_ptr<const LiveDose> now) override {
-    asio::post(io, [this, now = std::move(now)] {
-      dose = now;
-      for (const auto& [id, viewer] : each()) viewer->send(dose);
-    });
-  }
-  void show(std::shared_ptr<const LiveImage> now) override {
-    asio::post(io, [this, now = std::move(now)] {
-      image = now;
-      for (const auto& [id, viewer] : each()) viewer->send(image);
-    });
-  }
-  void show_text(wire::Kind kind, std::string text) {
-    asio::post(io, [this, kind, text = std::move(text)] {
-      implant[kind] = text;
-      for (const auto& [id, viewer] : each()) viewer->send(kind, text);
-    });
-  }
-  void tell(const SessionStatus& now) override {
-    asio::post(io, [this, now] {
-      status = now;
-      say_status();
-    });
-  }
-  void tell(const LiveEvent& event) override {
-    asio::post(io, [this, event] {
-      if (event.kind == "started") events.clear();
-      events.push_back(text_of({{"kind", event.kind},
-                                {"time_s", event.time_s},
-                                {"depth_mm", event.depth_mm},
-                                {"force_N", event.force_N},
-                                {"region", event.region}}));
-      if (events.size() > kKeptEvents) events.pop_front();
-      for (const auto& [id, viewer] : each()) viewer->send(wire::Kind::event, events.back());
-    });
-  }
-  void refuse(std::uint64_t id, const Notice& why) override {
-    asio::post(io, [this, id, why] {
-      const auto found = viewers.find(id);
-      if (found == viewers.end()) return;
-      found->second->send(wire::Kind::notice, text_of({{"text", why.text}, {"cure", why.cure}}));
-    });
-  }
-
-  // ViewerDesk: called from the thread of `io`.
-  void arrived(const std::shared_ptr<Viewer>& viewer) override {
-    viewers[viewer->id()] = viewer;
-    if (scene) viewer->send(scene);
-    if (!map.empty()) viewer->send(wire::Kind::map, map);
-    for (const auto& [kind, text] : implant) viewer->send(kind, text);
-    if (dose) viewer->send(dose);
-    if (image) viewer->send(image);
-    for (const std::string& event : events) viewer->send(wire::Kind::event, event);
-    say_status();
-    (void)session.ask({.kind = Request::Kind::greet, .viewer = viewer->id(), .text = {}, .number = 0.0});
-  }
-  void left(std::uint64_t id) override {
-    if (viewers.erase(id) == 0) return;
-    if (holding.leave(id)) session.let_go();
-    say_status();
-  }
-  void heard(Viewer& viewer, const HandTarget& hand) override {
-    if (holding.holder() == viewer.id()) session.aim(hand);
-  }
-  void heard(Viewer& viewer, const wire::Command& command) override {
-    using enum wire::Command::Do;
-    if (command.what == take) {
-      holding.take(viewer.id());
-      return say_status();
-    }
-    if (command.what == release) {
-      if (holding.holder() == viewer.id()) session.let_go();
-      holding.release(viewer.id());
-      return say_status();
-    }
-    if (command.what != drawn && holding.holder() != viewer.id())
-      return viewer.send(wire::Kind::notice,
-                         text_of({{"text", "another viewer holds the needle"}, {"cure", "Ask for the needle"}}));
-    const auto kind = request_kind(command.what);
-    if (kind && !session.ask({.kind = *kind, .viewer = viewer.id(), .text = command.text, .number = command.number}))
-      viewer.send(wire::Kind::notice, text_of({{"text", "too many requests are waiting"}, {"cure", "Try again"}}));
-  }
-
-  /// A copy of the viewers, because sending may close a viewer and so remove it from the map.
-  [[nodiscard]] std::map<std::uint64_t, std::shared_ptr<Viewer>> each() const { return viewers; }
-
-  void say_status() {
-    const SessionStatus& s = status;
-    Json json{{"state", name_of(s.state)},
-              {"stage", s.stage},
-              {"fraction", s.fraction < 0.0 ? Json(nullptr) : Json(s.fraction)},
-              {"message", s.failure.text},
-              {"cure", s.failure.cure},
-              {"mode", s.replay.name.empty() ? "live" : "replay"},
-              {"paused", s.paused},
-              {"insertion", s.insertion},
-              {"hole", s.hole},
-              {"inside", s.inside},
-              {"held", holding.holder() != 0},
-              {"asking", holding.asking()},
-              {"viewers", viewers.size()},
-              {"device", s.device},
-              {"device_problem", s.device_problem},
-              {"image",
-               {{"shown", s.image.shown},
-                {"problem", s.image.problem},
-                {"stage", s.image.stage},
-                {"probe_device", s.image.probe_device},
-                {"probe_problem", s.image.probe_problem}}},
-              {"recording", json_of(s.recording)},
-              {"replay",
-               {{"name", s.replay.name},
-                {"time_s", s.replay.time_s},
-                {"duration_s", s.replay.duration_s},
-                {"playing", s.replay.rate > 0.0},
-                {"rate", s.replay.rate}}},
-              {"loop",
-               {{"steps", s.loop.steps},
-                {"missed", s.loop.missed},
-                {"p50_us", s.loop.p50_us},
-                {"p99_us", s.loop.p99_us},
-                {"max_us", s.loop.max_us},
-                {"rights", s.loop.rights}}}};
-    for (const auto& [id, viewer] : each()) {
-      json["you_hold"] = holding.holder() == id;
-      json["you_ask"] = holding.asks(id);
-      json["dropped_messages"] = viewer->dropped_messages();
-      json["skipped_frames"] = viewer->skipped_frames();
-      viewer->send_status(text_of(json));
-    }
-  }
-
-  // Connections.
   void accept() {
     acceptor.async_accept([this](beast::error_code error, tcp::socket socket) {
       if (error == asio::error::operation_aborted) return;
@@ -341,11 +84,11 @@ struct Server::Parts final : public Audience, public ViewerDesk {
   }
   void answer(const std::shared_ptr<beast::tcp_stream>& stream, const HttpRequest& request) {
     if (beast::websocket::is_upgrade(request) && path_of(target(request)) == "/live" &&
-        pages.verdict(request) == Access::Verdict::granted && viewers.size() < settings.viewers) {
-      std::make_shared<Viewer>(++last_id, std::move(*stream), *this, settings.silence_s)->accept(request);
+        pages.verdict(request) == Access::Verdict::granted && hall.size() < settings.viewers) {
+      std::make_shared<Viewer>(++last_id, std::move(*stream), hall, settings.silence_s)->accept(request);
       return;
     }
-    if (beast::websocket::is_upgrade(request) && viewers.size() >= settings.viewers)
+    if (beast::websocket::is_upgrade(request) && hall.size() >= settings.viewers)
       return write(stream,
                    Pages::refusal(request, http::status::service_unavailable, "There are too many viewers already."));
     // Reading a recording takes a while, so another thread does it; here all viewers would have to wait.
@@ -441,19 +184,19 @@ void Server::start() {
   Parts& p = *parts_;
   p.accept();
   p.thread = std::thread([&p] { p.io.run(); });
-  p.session.start();
+  p.hall.session().start();
 }
 
 void Server::stop() {
   Parts& p = *parts_;
   if (!p.thread.joinable()) return;
-  p.session.stop();
+  p.hall.session().stop();
   p.readers.join();
   asio::post(p.io, [&p] {
     beast::error_code ignored;
     p.acceptor.close(ignored);
     p.retry.cancel();
-    for (const auto& [id, viewer] : p.each()) viewer->close();
+    p.hall.close();
     p.io.stop();
   });
   p.thread.join();

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <map>
 
 namespace stylet::serve::wire {
 
@@ -72,60 +71,24 @@ std::optional<HandTarget> decode_hand(std::span<const std::byte> message) {
       .depth_mm = v[0], .speed_mm_per_s = v[1], .roll_deg = v[2], .tilt_left_deg = v[3], .tilt_anterior_deg = v[4]};
 }
 
-/// The argument that a command needs.
-struct Need {
-  Command::Do what;
-  const char* key;  ///< JSON key of the argument; empty: no argument
-  bool text;        ///< the argument is a string, otherwise a number
-};
-
-const std::map<std::string, Need>& commands() {
-  using enum Command::Do;
-  static const std::map<std::string, Need> all{{"take", {take, "", false}},
-                                               {"release", {release, "", false}},
-                                               {"hole", {hole, "hole", true}},
-                                               {"insertion", {insertion, "index", false}},
-                                               {"reset", {reset, "", false}},
-                                               {"pause", {pause, "", false}},
-                                               {"resume", {resume, "", false}},
-                                               {"step", {step, "count", false}},
-                                               {"case", {open_case, "index", false}},
-                                               {"replay", {replay, "name", true}},
-                                               {"live", {live, "", false}},
-                                               {"seek", {seek, "time_s", false}},
-                                               {"play", {play, "rate", false}},
-                                               {"predict", {predict, "on", false}},
-                                               {"drawn", {drawn, "", false}},
-                                               {"needle", {needle, "index", false}},
-                                               {"drop", {drop, "", false}},
-                                               {"undo", {undo, "", false}},
-                                               {"clear", {clear, "", false}},
-                                               {"image", {image, "show", true}},
-                                               {"set", {set, "key", true}}};
-  return all;
-}
-
 std::optional<Command> decode_command(std::string_view text) {
   const auto json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_object() || !json.contains("do") || !json["do"].is_string()) return std::nullopt;
-  const auto found = commands().find(json["do"].get<std::string>());
-  if (found == commands().end()) return std::nullopt;
-  const Need& need = found->second;
-  Command command{need.what, {}, 0.0};
-  if (*need.key == '\0') return command;
-  if (!json.contains(need.key)) return std::nullopt;
-  const auto& value = json[need.key];
-  if (need.text ? !value.is_string() : !value.is_number()) return std::nullopt;
-  if (need.text) {
-    command.text = value.get<std::string>();
-    if (need.what == Command::Do::set) {
-      if (!json.contains("value") || !json["value"].is_number()) return std::nullopt;
-      command.number = json["value"].get<double>();
-      if (!std::isfinite(command.number)) return std::nullopt;
+  const auto row = std::ranges::find(commands(), json["do"].get_ref<const std::string&>(), &CommandRow::word);
+  if (row == commands().end()) return std::nullopt;
+  Command command{row->what, {}, 0.0};
+  for (const Argument& argument : row->arguments) {
+    if (argument.type == Argument::Type::none) break;
+    const auto value = json.find(std::string(argument.name));
+    if (value == json.end()) return std::nullopt;
+    if (argument.type == Argument::Type::text) {
+      if (!value->is_string()) return std::nullopt;
+      command.text = value->get<std::string>();
+    } else {
+      if (!value->is_number()) return std::nullopt;
+      command.number = value->get<double>();
+      if (!(std::abs(command.number) <= argument.most)) return std::nullopt;
     }
-  } else {
-    command.number = value.get<double>();
-    if (!(std::abs(command.number) <= 1e6)) return std::nullopt;
   }
   return command;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "commands.hpp"
 #include "hand.hpp"
 #include "stylet/core/result.hpp"
 #include "stylet/serve/image_picture.hpp"
@@ -50,36 +51,6 @@ Bytes encode(const LiveDose& dose, std::uint32_t number);
 Bytes encode(const LiveImage& image, std::uint32_t number);
 /// Encodes a message that is JSON: of any other kind.
 Bytes encode(Kind kind, std::string_view json, std::uint32_t number);
-
-/// A command of a page, named as in the protocol.
-struct Command {
-  enum class Do {
-    take,
-    release,
-    hole,
-    insertion,
-    reset,
-    pause,
-    resume,
-    step,
-    open_case,
-    replay,
-    live,
-    seek,
-    play,
-    predict,
-    drawn,
-    needle,
-    drop,
-    undo,
-    clear,
-    image,
-    set
-  };
-  Do what{};
-  std::string text;     ///< argument of hole, replay and image; key of set
-  double number = 0.0;  ///< argument of insertion, needle, step, case, seek, play and predict; value of set
-};
 
 /// Decodes a message of a page. Empty if it is malformed: wrong length, unknown kind or command, numbers that are not
 /// finite or out of range.

@@ -184,7 +184,7 @@ TEST(ReplayedSeeds, are_those_of_the_moment_and_move_as_the_nodes_around_them) {
   implant.doses = {{RecordedScore::kOfPlan, 2, 150.0, 103.0, 95.0}, {2, 2, 30.0, 20.0, 5.0}};
   Replay replay(std::move(run), {{3, 1}, {}});
   ReplayedSeeds seeds(replay);
-  EXPECT_EQ(seeds.plan().needles[0].seeds.size(), 2u);
+  EXPECT_EQ(seeds.plan().plan.seeds.size(), 2u);
   auto now = seeds.news();
   ASSERT_TRUE(now);
   EXPECT_EQ(now->seeds.size(), 1u);
@@ -238,23 +238,4 @@ TEST(SeedJournal, tells_each_drop_and_each_seed_that_was_taken_back_once) {
   EXPECT_EQ(news.acts[1].kind, SeedAct::Kind::dropped);
   implant.seeds.clear();
   EXPECT_EQ(journal.news(implant, false, 3.0).acts.size(), 2u);
-}
-
-TEST(SeedJournal, keeps_a_plan_as_it_is) {
-  LivePlan plan;
-  plan.needles.resize(2);
-  plan.needles[1].name = "right";
-  plan.needles[1].hole = "D4";
-  plan.needles[1].depth_mm = 60.0;
-  plan.needles[1].seeds = {{3, Vec3(1, 2, 3), Vec3::UnitX(), 55.0}};
-  plan.current = 1;
-  plan.prescription_Gy = 145.0;
-  const LivePlan back = live_plan(recorded_plan(plan));
-  ASSERT_EQ(back.needles.size(), 2u);
-  EXPECT_TRUE(back.needles[0].seeds.empty());
-  EXPECT_EQ(back.needles[1].hole, "D4");
-  ASSERT_EQ(back.needles[1].seeds.size(), 1u);
-  EXPECT_EQ(back.needles[1].seeds[0].drop_depth_mm, 55.0);
-  EXPECT_EQ(back.current, 1);
-  EXPECT_EQ(back.prescription_Gy, 145.0);
 }

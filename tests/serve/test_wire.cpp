@@ -39,8 +39,8 @@ wire::Bytes message(std::uint32_t kind, const void* data, std::size_t size) {
 wire::Bytes hand(std::array<float, 5> values) { return message(16, values.data(), sizeof values); }
 wire::Bytes command(const std::string& text) { return message(17, text.data(), text.size()); }
 
-const wire::Command* as_command(const std::optional<std::variant<HandTarget, wire::Command>>& decoded) {
-  return decoded ? std::get_if<wire::Command>(&*decoded) : nullptr;
+const Command* as_command(const std::optional<std::variant<HandTarget, Command>>& decoded) {
+  return decoded ? std::get_if<Command>(&*decoded) : nullptr;
 }
 
 }  // namespace
@@ -176,9 +176,9 @@ TEST(Wire, a_picture_has_its_text_and_its_values) {
 
 TEST(Wire, a_key_of_the_pictures_is_set_to_a_number) {
   const auto decoded = wire::decode(command(R"({"do":"set","key":"probe.lift_mm","value":8.5})"));
-  const wire::Command* set = as_command(decoded);
+  const Command* set = as_command(decoded);
   ASSERT_NE(set, nullptr);
-  EXPECT_EQ(set->what, wire::Command::Do::set);
+  EXPECT_EQ(set->what, Command::Do::set);
   EXPECT_EQ(set->text, "probe.lift_mm");
   EXPECT_EQ(set->number, 8.5);
   EXPECT_FALSE(wire::decode(command(R"({"do":"set","key":"probe.lift_mm"})"))) << "no value";
@@ -202,18 +202,18 @@ TEST(Wire, a_hand_is_taken_as_it_is_said) {
 TEST(Wire, commands_carry_what_they_need) {
   const auto hole = wire::decode(command(R"({"do":"hole","hole":"d3.5"})"));
   ASSERT_NE(as_command(hole), nullptr);
-  EXPECT_EQ(as_command(hole)->what, wire::Command::Do::hole);
+  EXPECT_EQ(as_command(hole)->what, Command::Do::hole);
   EXPECT_EQ(as_command(hole)->text, "d3.5");
   const auto seek = wire::decode(command(R"({"do":"seek","time_s":1.5})"));
   ASSERT_NE(as_command(seek), nullptr);
   EXPECT_EQ(as_command(seek)->number, 1.5);
   const auto predict = wire::decode(command(R"({"do":"predict","on":1})"));
   ASSERT_NE(as_command(predict), nullptr);
-  EXPECT_EQ(as_command(predict)->what, wire::Command::Do::predict);
+  EXPECT_EQ(as_command(predict)->what, Command::Do::predict);
   EXPECT_EQ(as_command(predict)->number, 1.0);
   const auto needle = wire::decode(command(R"({"do":"needle","index":3})"));
   ASSERT_NE(as_command(needle), nullptr);
-  EXPECT_EQ(as_command(needle)->what, wire::Command::Do::needle);
+  EXPECT_EQ(as_command(needle)->what, Command::Do::needle);
   EXPECT_EQ(as_command(needle)->number, 3.0);
   for (const char* name : {"take", "release", "reset", "pause", "resume", "live", "drawn", "drop", "undo", "clear"})
     EXPECT_NE(as_command(wire::decode(command(std::string(R"({"do":")") + name + "\"}"))), nullptr) << name;

@@ -16,6 +16,11 @@ struct ImplantCase {
   /// The structures of the patient, sampled. The live page takes at most 20,000 samples of each.
   std::vector<DoseStructure> structures;
   DoseOptions options;  ///< goals and swelling
+
+  /// The prescribed dose [Gy] of the options, otherwise of the plan; 0: none is known.
+  [[nodiscard]] double prescription_Gy() const {
+    return options.prescription_Gy > 0.0 ? options.prescription_Gy : plan.prescription_Gy;
+  }
 };
 
 }  // namespace stylet::serve

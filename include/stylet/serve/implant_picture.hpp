@@ -2,48 +2,22 @@
 #pragma once
 
 #include "stylet/dose/dose_evaluation.hpp"
-#include "stylet/implant/seed_history.hpp"
+#include "stylet/implant/recorded_implant.hpp"
 #include "stylet/sim/choices.hpp"
 
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <vector>
 
-/// The message to viewers of a live session about an implant that is being carried out (docs/live_protocol.md).
+/// The messages to viewers of a live session about an implant that is being carried out (docs/live_protocol.md).
 namespace stylet::serve {
 
-/// A seed of the plan.
-struct PlannedSeed {
-  std::size_t number = 0;  ///< its position in DosePlan::sources
-  Vec3 planned_mm = Vec3::Zero();
-  Vec3 axis = Vec3::UnitZ();  ///< towards the tip of its needle
-  /// Depth of the base at which it is left at its planned place: pushed out of the tip, or passed by the tip.
-  double drop_depth_mm = 0.0;
-  double behind_tip_mm = 0.0;  ///< in the loaded needle, from the tip to its centre; 0 in a replay
-};
-
-/// A needle of the plan.
-struct PlannedNeedle {
-  std::string name;                ///< as in NeedleLoad
-  std::string hole;                ///< hole of the template on its line; empty: there is none
-  Vec3 entry_mm = Vec3::Zero();    ///< [mm] LPS, skin point on its line
-  Vec3 direction = Vec3::UnitZ();  ///< unit vector LPS
-  double depth_mm = 0.0;           ///< depth of the base at which the tip is at its planned place
-  bool is_ready = false;           ///< its model is compiled, so that it can be chosen at once
-  std::vector<PlannedSeed> seeds;  ///< from the tip on
-};
-
 /// The plan to follow. Without needles there is no plan.
-struct LivePlan {
-  std::vector<PlannedNeedle> needles;  ///< in the order of the procedure
-  int current = -1;                    ///< needle that is in front of or in the patient; −1: one beside the plan
-  double seed_length_mm = 0.0;
-  double seed_diameter_mm = 0.0;
-  double prescription_Gy = 0.0;  ///< 0: none is known
-  std::string source;            ///< name of the source model
+struct ShownPlan {
+  RecordedPlan plan;
   SeedTechnique technique = SeedTechnique::pushed;
+  std::vector<bool> ready{};  ///< needles whose model is compiled, so that they can be chosen at once; empty: none is
 };
 
 /// The dose of some seeds.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "stylet/serve/session.hpp"
+#include "stylet/serve/session_settings.hpp"
 
 #include <cstdint>
 #include <filesystem>

@@ -2,9 +2,10 @@
 // A made-up server inside the page: enough behaviour to look at every part of it. Its forces are invented.
 // ?fake opens it; ?fake&watch as a viewer without the needle, &failed, &loading, &lost for these states; &plan with a
 // plan of seeds, of which &plan=2 leaves two to be dropped.
+import type { Command } from '../src/commands';
 import type { Transport, TransportListener } from '../src/connection';
 import { holes } from '../src/scene';
-import { Kind, type Command, type Frame, type Hand } from '../src/wire';
+import { Kind, type Frame, type Hand } from '../src/wire';
 import { encodeFrame, encodeScene, encodeText } from './encode';
 import { FakeImplant } from './fake_implant';
 import { BODIES, makePatient, SKIN_Z } from './fake_patient';

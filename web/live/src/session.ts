@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The state of the simulation, as this page has received it. Parts of the page listen to the topics that they need.
+import type { Command } from './commands';
 import { understood, type Transport, type TransportListener } from './connection';
 import type { LiveImage } from './imaging/image';
 import type { Dose, Implant, Plan, Seeds } from './implant/implant';
 import type { Scene } from './scene';
-import { encodeCommand, encodeHand, Kind, type Command, type Event, type Frame, type Hand, type LiveMap, type Notice, type Status } from './wire';
+import { encodeCommand, encodeHand, Kind, type Event, type Frame, type Hand, type LiveMap, type Notice, type Status } from './wire';
 
 interface Topics {
   link: void;       // the connection was opened or closed

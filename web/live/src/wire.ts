@@ -2,6 +2,7 @@
 // Encodes and decodes the messages of docs/live_protocol.md. Decoding checks every length before it reads; a WireError
 // says what is wrong.
 import type { HoleMap } from '../../shared/hole_map';
+import type { Command } from './commands';
 import type { LiveImage, ImageText, ShownImage } from './imaging/image';
 import type { Dose, Implant, Plan, Seeds } from './implant/implant';
 import type { Scene, SceneText } from './scene';
@@ -62,12 +63,6 @@ export interface Status {
 export interface Event { kind: string; time_s: number; depth_mm: number; force_N: number; region: string }
 export interface LiveMap { map: HoleMap | null; why_not: string; predicted: number; predicting: boolean }
 export interface Notice { text: string; cure: string }
-
-export type Command =
-  | { do: 'take' | 'release' | 'reset' | 'pause' | 'resume' | 'live' | 'drawn' | 'drop' | 'undo' | 'clear' }
-  | { do: 'hole'; hole: string } | { do: 'insertion' | 'needle' | 'case'; index: number } | { do: 'step'; count: number }
-  | { do: 'replay'; name: string } | { do: 'seek'; time_s: number } | { do: 'play'; rate: number }
-  | { do: 'predict'; on: 0 | 1 } | { do: 'image'; show: ShownImage } | { do: 'set'; key: string; value: number };
 
 export interface Hand { depth: number; speed: number; roll: number; tiltLeft: number; tiltAnterior: number }
 

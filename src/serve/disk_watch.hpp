@@ -11,13 +11,13 @@
 namespace stylet::serve {
 
 /// Calls make_room() periodically while something is recorded. It has a thread of its own, because a disk may be slow.
-class RoomWatch {
+class DiskWatch {
  public:
   using Look = std::function<RoomReport()>;
   /// @param look calls make_room() for the recordings' folder
   /// @param say receives messages about removed recordings and new warnings, from the thread; may be empty
   /// @param every period of the calls
-  RoomWatch(Look look, std::function<void(const std::string&)> say, std::chrono::milliseconds every);
+  DiskWatch(Look look, std::function<void(const std::string&)> say, std::chrono::milliseconds every);
 
   /// Starts the periodic calls, the first one at once, or stops them. Clears the report.
   void set_recording(bool is_recording);

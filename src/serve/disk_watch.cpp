@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "room_watch.hpp"
+#include "disk_watch.hpp"
 
 #include <utility>
 
 namespace stylet::serve {
 
-RoomWatch::RoomWatch(Look look, std::function<void(const std::string&)> say, std::chrono::milliseconds every)
+DiskWatch::DiskWatch(Look look, std::function<void(const std::string&)> say, std::chrono::milliseconds every)
     : look_(std::move(look)),
       say_(std::move(say)),
       every_(every),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
-void RoomWatch::set_recording(bool is_recording) {
+void DiskWatch::set_recording(bool is_recording) {
   {
     const std::lock_guard lock(mutex_);
     is_recording_ = is_recording;
@@ -21,19 +21,19 @@ void RoomWatch::set_recording(bool is_recording) {
   wake_.notify_all();
 }
 
-RoomReport RoomWatch::report() const {
+RoomReport DiskWatch::report() const {
   const std::lock_guard lock(mutex_);
   return report_;
 }
 
-void RoomWatch::tell(const RoomReport& before, const RoomReport& now) const {
+void DiskWatch::tell(const RoomReport& before, const RoomReport& now) const {
   if (!say_) return;
   for (const std::string& name : now.removed)
     say_("The recording " + name + " was removed to keep all recordings within their limit (--keep).");
   if (before.warning.empty() && !now.warning.empty()) say_("Recordings may stop soon: " + now.warning + ".");
 }
 
-void RoomWatch::run(const std::stop_token& stop) {
+void DiskWatch::run(const std::stop_token& stop) {
   RoomReport told;
   int seen = 0;
   std::unique_lock lock(mutex_);
