@@ -5,15 +5,11 @@
 
 #include <span>
 #include <string>
-#include <string_view>
 
 namespace stylet::results {
 
-/// The header line of forces.csv, without line end. Columns and units: docs/results.md.
-std::string_view forces_csv_header();
-
-/// The text of forces.csv: the header and one line per step. Number formats are fixed and independent of the locale, so
-/// that the same steps give the same bytes. A value that is not finite prints as "nan" or "inf".
+/// The text of forces.csv: the header and one line per step. Columns and units: docs/results.md. Number formats are
+/// fixed and independent of the locale, so that the same steps give the same bytes.
 std::string forces_csv(std::span<const Step> steps);
 
 }  // namespace stylet::results

@@ -144,7 +144,7 @@ Result<std::unique_ptr<ResultsWriter>> ResultsWriter::open(const fs::path& folde
 
 Result<> ResultsWriter::add_step(const Step& step) {
   if (!std::isfinite(step.time_s)) return not_finite("step", step.time_s);
-  return parts_->recorder.add_step(step);
+  return parts_->recorder.add(step);
 }
 
 Result<> ResultsWriter::add_frame(const Frame& frame) {
@@ -159,7 +159,7 @@ Result<> ResultsWriter::add_frame(const Frame& frame) {
   stored.frame.displacement.resize(0);
   stored.displacement.reserve(static_cast<std::size_t>(frame.displacement.size()));
   for (const double u : frame.displacement) stored.displacement.push_back(static_cast<float>(u));
-  return parts_->recorder.add_frame(std::move(stored));
+  return parts_->recorder.add(std::move(stored));
 }
 
 void ResultsWriter::add_probe(const ProbeReport& probe) { parts_->probe = probe; }
