@@ -49,11 +49,12 @@ std::string csv_line(const T& record, NumberText number = results::fixed) {
   return line;
 }
 
-/// The whole text: the header, and one line for each record.
-template <class T>
-std::string csv_of(std::span<const T> records) {
-  std::string text = csv_header<T>() + "\n";
-  for (const T& record : records) text += csv_line(record) + "\n";
+/// The whole text: the header, and one line for each record. Number formats are fixed and independent of the locale, so
+/// that the same records give the same bytes.
+template <class Records>
+std::string csv_of(const Records& records) {
+  std::string text = csv_header<typename Records::value_type>() + "\n";
+  for (const auto& record : records) text += csv_line(record) + "\n";
   return text;
 }
 

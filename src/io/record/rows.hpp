@@ -6,6 +6,8 @@
 
 #include <zlib.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -49,7 +51,13 @@ bool restore(const Field& field, Stored number, V& value) {
 }
 
 /// Copies a text into a field of fixed length; a text that is too long is cut between two UTF-8 characters.
-std::string padded(const std::string& text, std::size_t length);
+inline std::string padded(const std::string& text, std::size_t length) {
+  std::size_t kept = std::min(text.size(), length);
+  while (kept > 0 && kept < text.size() && (static_cast<unsigned char>(text[kept]) & 0xC0U) == 0x80U) --kept;
+  std::string field = text.substr(0, kept);
+  field.resize(length);
+  return field;
+}
 
 inline h5::Handle type_of(const Field& field, const std::string&) { return h5::string_type(field.bytes); }
 inline h5::Handle type_of(const Field&, const Vec3&) { return h5::array_type(H5T_NATIVE_DOUBLE, 3); }

@@ -3,21 +3,9 @@
 
 #include "model/digest.hpp"
 
-#include <algorithm>
 #include <cstring>
 
-namespace stylet {
-
-std::string record::padded(const std::string& text, std::size_t length) {
-  std::size_t kept = std::min(text.size(), length);
-  if (kept < text.size())
-    while (kept > 0 && (static_cast<unsigned char>(text[kept]) & 0xC0U) == 0x80U) --kept;
-  std::string field = text.substr(0, kept);
-  field.resize(length);
-  return field;
-}
-
-namespace results {
+namespace stylet::results {
 
 std::string start_digest(const RunInfo& info, const TetMesh& mesh) {
   detail::Digest digest;
@@ -56,5 +44,4 @@ std::string plan_digest(const StoredPlan& plan) {
   return digest.finish();
 }
 
-}  // namespace results
-}  // namespace stylet
+}  // namespace stylet::results

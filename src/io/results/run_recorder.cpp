@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/io/run_recorder.hpp"
 
-#include "forces_csv.hpp"
+#include "record/csv.hpp"
+#include "record/run_columns.hpp"
 #include "recorder.hpp"
 
 namespace stylet {
@@ -35,6 +36,6 @@ Result<> RunRecorder::add_frame(const Frame& frame) {
   return parts_->recorder.add(std::move(stored));
 }
 
-std::string forces_csv_text(std::span<const Step> steps) { return results::forces_csv(steps); }
+std::string forces_csv_text(std::span<const Step> steps) { return record::csv_of(steps); }
 
 }  // namespace stylet

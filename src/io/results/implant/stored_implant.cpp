@@ -40,8 +40,6 @@ class Seal {
   detail::Digest digest_;
 };
 
-std::string member_name(std::size_t number) { return fmt::format("{:03}", number); }
-
 hsize_t product(const std::vector<hsize_t>& counts) {
   hsize_t all = 1;
   for (const hsize_t count : counts) all *= count;
@@ -58,137 +56,97 @@ hid_t number_type_of() {
     return h5::number_type(V{});
 }
 
-/// Writes the parts of a file. Writer and Reader have the same functions, so that one list serves for both.
-class Writer {
+/// Writes the parts of a file, or reads them into the same values: one list of the contents serves for both. The
+/// functions throw h5::Failure.
+class File {
  public:
-  Writer(hid_t at, Seal& seal) : at_(at), seal_(seal) {}
+  File(hid_t at, Seal& seal, bool writes) : at_(at), seal_(seal), writes_(writes) {}
 
   template <class T>
   void attributes(T& record) {
-    record::write_attributes(at_, record);
-    record::each_field<record::kFile>(
-        record, [&](const record::Field& field, auto& value) { seal_.add(record::name_of(field), value); });
-  }
-  template <class T>
-  void rows(const char* name, std::vector<T>& records) {
-    const auto rows = record::rows_of(std::span<const T>(records));
-    record::write_rows(at_, name, rows);
-    seal_.add_rows(name, rows);
-  }
-  /// @param inner extents of the axes but the first
-  template <class Values>
-  void array(const char* name, Values& values, std::vector<hsize_t>& inner) {
-    const hid_t type = number_type_of<Values>();
-    std::vector<hsize_t> shape{0};
-    shape.insert(shape.end(), inner.begin(), inner.end());
-    if (const hsize_t row = product(inner) * H5Tget_size(type); row > 0)
-      shape[0] = values.size() * sizeof(typename Values::value_type) / row;
-    h5::write_array(at_, name, type, shape, values.data());
-    seal_.add(name, values);
-  }
-  void text(const char* name, std::string& text) {
-    h5::write_text(at_, name, text);
-    seal_.add(name, text);
-  }
-  void texts(const char* name, std::vector<std::string>& texts) {
-    h5::write_texts(at_, name, texts);
-    seal_.add(name, texts);
-  }
-  void mesh(TetMesh& mesh) {
-    h5::write_mesh(at_, mesh);
-    seal_.add("mesh", mesh);
-  }
-  template <class Contents>
-  void group(const char* name, const Contents& contents) {
-    const h5::Handle group = h5::group(at_, name);
-    Writer inside(group, seal_);
-    contents(inside);
-  }
-  /// @return `count`
-  std::size_t members(std::size_t count) const { return count; }
-
- private:
-  hid_t at_;
-  Seal& seal_;
-};
-
-/// Reads the parts of a file. Throws h5::Failure.
-class Reader {
- public:
-  Reader(hid_t at, Seal& seal) : at_(at), seal_(seal) {}
-
-  template <class T>
-  void attributes(T& record) {
-    record::read_attributes(at_, record);
     record::each_field<record::kFile>(record, [&](const record::Field& field, auto& value) {
-      if (!record::lacks(at_, field)) seal_.add(record::name_of(field), value);
+      if (!writes_ && record::lacks(at_, field)) return;
+      const std::string name = record::name_of(field);
+      writes_ ? record::write_attribute(at_, name, value) : record::read_attribute(at_, name, value);
+      seal_.add(name, value);
     });
   }
   template <class T>
   void rows(const char* name, std::vector<T>& records) {
-    const auto rows = record::read_rows<T>(at_, name);
+    const auto rows = writes_ ? record::rows_of(std::span<const T>(records)) : record::read_rows<T>(at_, name);
+    if (writes_) record::write_rows(at_, name, rows);
     records.resize(rows.size());
-    for (std::size_t k = 0; k < rows.size(); ++k)
+    for (std::size_t k = 0; k < rows.size() && !writes_; ++k)
       if (!rows.get(k, records[k])) throw h5::Failure(std::string(name) + " has a number that means nothing");
     seal_.add_rows(name, rows);
   }
-  /// @param inner expected extents of the axes but the first; those that are 0 are set
+  /// @param inner extents of the axes but the first; those that are 0 are set when reading
+  template <class Values>
+  void array(const char* name, Values& values, std::vector<hsize_t>&& inner = {}) {
+    array(name, values, inner);
+  }
   template <class Values>
   void array(const char* name, Values& values, std::vector<hsize_t>& inner) {
-    const h5::Handle set = h5::dataset(at_, name);
-    const std::vector<hsize_t> shape = h5::extents(set);
-    demand_shape(shape.size() == inner.size() + 1, name);
-    for (std::size_t k = 0; k < inner.size(); ++k) {
-      if (inner[k] == 0) inner[k] = shape[k + 1];
-      demand_shape(inner[k] == shape[k + 1], name);
-    }
     const hid_t type = number_type_of<Values>();
-    values.resize(product(shape) * H5Tget_size(type) / sizeof(typename Values::value_type));
-    if (!values.empty()) h5::read_rows(set, type, 0, shape[0], values.data());
+    constexpr std::size_t item = sizeof(typename Values::value_type);
+    if (writes_) {
+      std::vector<hsize_t> shape{0};
+      shape.insert(shape.end(), inner.begin(), inner.end());
+      if (const hsize_t row = product(inner) * H5Tget_size(type); row > 0) shape[0] = values.size() * item / row;
+      h5::write_array(at_, name, type, shape, values.data());
+    } else {
+      const h5::Handle set = h5::dataset(at_, name);
+      const std::vector<hsize_t> shape = h5::extents(set);
+      demand_shape(shape.size() == inner.size() + 1, name);
+      for (std::size_t k = 0; k < inner.size(); ++k) {
+        if (inner[k] == 0) inner[k] = shape[k + 1];
+        demand_shape(inner[k] == shape[k + 1], name);
+      }
+      values.resize(product(shape) * H5Tget_size(type) / item);
+      if (!values.empty()) h5::read_rows(set, type, 0, shape[0], values.data());
+    }
     seal_.add(name, values);
   }
   void text(const char* name, std::string& text) {
-    text = h5::read_text(at_, name);
+    writes_ ? h5::write_text(at_, name, text) : void(text = h5::read_text(at_, name));
     seal_.add(name, text);
   }
   void texts(const char* name, std::vector<std::string>& texts) {
-    texts = h5::read_texts(at_, name);
+    writes_ ? h5::write_texts(at_, name, texts) : void(texts = h5::read_texts(at_, name));
     seal_.add(name, texts);
   }
   void mesh(TetMesh& mesh) {
-    mesh = h5::read_mesh(at_);
+    writes_ ? h5::write_mesh(at_, mesh) : void(mesh = h5::read_mesh(at_));
     seal_.add("mesh", mesh);
   }
-  template <class Contents>
-  void group(const char* name, const Contents& contents) {
-    const h5::Handle group = h5::open_group(at_, name);
-    Reader inside(group, seal_);
-    contents(inside);
-  }
-  /// Number of the groups in this group.
-  std::size_t members(std::size_t) const {
-    H5G_info_t info{};
-    h5::check(H5Gget_info(at_, &info), "members");
-    return info.nlinks;
+  /// A group with the contents of an item.
+  template <class Item>
+  void group(const std::string& name, Item& item);
+  /// A group with a group for each item.
+  template <class Item>
+  void members(const char* name, std::vector<Item>& items) {
+    const h5::Handle group = open(name);
+    if (!writes_) {
+      H5G_info_t info{};
+      h5::check(H5Gget_info(group, &info), name);
+      items.resize(info.nlinks);
+    }
+    File inside(group, seal_, writes_);
+    for (std::size_t k = 0; k < items.size(); ++k) inside.group(fmt::format("{:03}", k), items[k]);
   }
 
  private:
+  [[nodiscard]] h5::Handle open(const std::string& name) const {
+    return writes_ ? h5::group(at_, name.c_str()) : h5::open_group(at_, name.c_str());
+  }
   hid_t at_;
   Seal& seal_;
+  bool writes_;
 };
-
-void list(auto& file, const char* name, auto& values) {
-  std::vector<hsize_t> none;
-  file.array(name, values, none);
-}
-void points(auto& file, const char* name, std::vector<Vec3>& values) {
-  std::vector<hsize_t> three{3};
-  file.array(name, values, three);
-}
 
 // Lists of lists are one array in the file: they are joined, written or read, and taken apart again.
 
-void contents(auto& file, NeedleHistory& needle) {
+void contents(File& file, NeedleHistory& needle) {
   file.attributes(needle);
   file.rows("steps", needle.record.steps);
   file.rows("events", needle.events);
@@ -196,8 +154,7 @@ void contents(auto& file, NeedleHistory& needle) {
   for (const NeedleShape& shape : needle.record.shapes)
     all.insert(all.end(), shape.points_mm.begin(), shape.points_mm.end());
   file.rows("shapes", needle.record.shapes);
-  std::vector<hsize_t> inner{kNeedleShapePoints, 3};
-  file.array("shapes_mm", all, inner);
+  file.array("shapes_mm", all, {kNeedleShapePoints, 3});
   demand_shape(all.size() == needle.record.shapes.size() * kNeedleShapePoints, "shapes_mm");
   for (auto from = all.begin(); NeedleShape & shape : needle.record.shapes) {
     shape.points_mm.assign(from, from + kNeedleShapePoints);
@@ -205,7 +162,7 @@ void contents(auto& file, NeedleHistory& needle) {
   }
 }
 
-void contents(auto& file, RecordedStructure& structure) {
+void contents(File& file, RecordedStructure& structure) {
   file.attributes(structure);
   std::vector<Vec3> all;
   std::vector<std::int64_t> counts;
@@ -213,8 +170,8 @@ void contents(auto& file, RecordedStructure& structure) {
     all.insert(all.end(), contour.points.begin(), contour.points.end());
     counts.push_back(static_cast<std::int64_t>(contour.points.size()));
   }
-  points(file, "contour_points_mm", all);
-  list(file, "contour_sizes", counts);
+  file.array("contour_points_mm", all, {3});
+  file.array("contour_sizes", counts);
   structure.contours.resize(counts.size());
   auto from = all.begin();
   for (std::size_t k = 0; k < counts.size(); ++k) {
@@ -222,10 +179,10 @@ void contents(auto& file, RecordedStructure& structure) {
     structure.contours[k].points.assign(from, from + counts[k]);
     from += counts[k];
   }
-  points(file, "cloud_mm", structure.cloud_mm);
+  file.array("cloud_mm", structure.cloud_mm, {3});
 }
 
-void contents(auto& file, RecordedDose& dose) {
+void contents(File& file, RecordedDose& dose) {
   file.attributes(dose);
   auto& size = dose.grid.size;
   std::vector<hsize_t> plane{static_cast<hsize_t>(size[1]), static_cast<hsize_t>(size[0])};
@@ -233,7 +190,7 @@ void contents(auto& file, RecordedDose& dose) {
   const hsize_t layer = product(plane);
   size = {static_cast<Index>(plane[1]), static_cast<Index>(plane[0]),
           static_cast<Index>(layer > 0 ? dose.grid.dose_Gy.size() / layer : 0)};
-  list(file, "dvh_dose_Gy", dose.dose_Gy);
+  file.array("dvh_dose_Gy", dose.dose_Gy);
   std::vector<double> all;
   for (const std::vector<double>& curve : dose.percent) all.insert(all.end(), curve.begin(), curve.end());
   std::vector<hsize_t> inner{dose.dose_Gy.size()};
@@ -248,27 +205,25 @@ void contents(auto& file, RecordedDose& dose) {
   }
 }
 
-template <class Item>
-void members(auto& file, const char* name, std::vector<Item>& items) {
-  file.group(name, [&](auto& group) {
-    items.resize(group.members(items.size()));
-    for (std::size_t k = 0; k < items.size(); ++k)
-      group.group(member_name(k).c_str(), [&](auto& member) { contents(member, items[k]); });
-  });
-}
-
-void contents(auto& file, ImplantRecord& record) {
+void contents(File& file, ImplantRecord& record) {
   file.attributes(record);
   file.text("scenario", record.scenario_text);
   file.texts("warnings", record.warnings);
-  list(file, "summary_json", record.summary);
+  file.array("summary_json", record.summary);
   file.mesh(record.mesh);
-  members(file, "needles", record.needles);
-  members(file, "stabilising", record.stabilising);
+  file.members("needles", record.needles);
+  file.members("stabilising", record.stabilising);
   file.rows("seeds", record.seeds);
-  members(file, "structures", record.structures);
-  file.group("planned", [&](auto& group) { contents(group, record.planned); });
-  file.group("delivered", [&](auto& group) { contents(group, record.delivered); });
+  file.members("structures", record.structures);
+  file.group("planned", record.planned);
+  file.group("delivered", record.delivered);
+}
+
+template <class Item>
+void File::group(const std::string& name, Item& item) {
+  const h5::Handle group = open(name);
+  File inside(group, seal_, writes_);
+  contents(inside, item);
 }
 
 /// The digest of a file of version 2, in its own order. Enumerations were numbers of four bytes.
@@ -315,7 +270,7 @@ ImplantRecord whole_implant_in(hid_t file) {
   if (version < 2) throw h5::Failure("written by an older version of stylet, whose seeds have fewer causes");
   Seal seal;
   ImplantRecord record;
-  Reader reader(file, seal);
+  File reader(file, seal, false);
   contents(reader, record);
   for (const SeedHistory& seed : record.seeds) demand_shape(seed.needle < record.needles.size(), "/seeds: needle");
   if (h5::read_text_attribute(file, "content_sha256") != (version == 2 ? digest_of_version_2(record) : seal.finish()))
@@ -334,7 +289,7 @@ void write_stored_implant(const char* path, ImplantRecord record) {
   h5::write_attribute(file, "units", std::string("mm, N, s, Gy"));
   h5::write_attribute(file, "frame", std::string("LPS"));
   Seal seal;
-  Writer writer(file, seal);
+  File writer(file, seal, true);
   contents(writer, record);
   h5::write_attribute(file, "content_sha256", seal.finish());
   if (!file.reset()) h5::fail("close");
