@@ -166,6 +166,22 @@ TEST(ImplantRecord, keeps_all_causes_of_seeds_and_of_dwell_positions) {
   EXPECT_TRUE(read->seeds[1].cause_mm == wrote.seeds[1].cause_mm);
 }
 
+TEST(ImplantRecord, of_a_temporary_implant_says_so_and_has_the_places_at_planning) {
+  ImplantRecord wrote = invented_record();
+  EXPECT_EQ(wrote.implant, Implant::permanent);
+  wrote.implant = Implant::temporary;
+  wrote.seeds[0].at_planning = DwellAtPlanning{Vec3(1, 2, 3), Vec3(4, 5, 6)};
+  const RecordFolder folder;
+  ASSERT_TRUE(write_implant_record(wrote, folder.path / "run.h5").ok());
+  const auto read = read_implant_record(folder.path / "run.h5");
+  ASSERT_TRUE(read.ok()) << read.error().message();
+  EXPECT_EQ(read->implant, Implant::temporary);
+  ASSERT_TRUE(read->seeds[0].at_planning);
+  EXPECT_EQ(read->seeds[0].at_planning->room_mm, Vec3(1, 2, 3));
+  EXPECT_EQ(read->seeds[0].at_planning->tissue_mm, Vec3(4, 5, 6));
+  EXPECT_FALSE(read->seeds[1].at_planning);
+}
+
 TEST(ImplantRecord, is_no_recording_of_an_insertion_and_says_what_to_do) {
   const RecordFolder folder;
   ASSERT_TRUE(write_implant_record(invented_record(), folder.path / "run.h5").ok());

@@ -58,9 +58,9 @@ hid_t number_type_of() {
 
 /// Writes the parts of a file, or reads them into the same values: one list of the contents serves for both. The
 /// functions throw h5::Failure.
-class File {
+class ImplantFile {
  public:
-  File(hid_t at, Seal& seal, bool writes) : at_(at), seal_(seal), writes_(writes) {}
+  ImplantFile(hid_t at, Seal& seal, bool writes) : at_(at), seal_(seal), writes_(writes) {}
 
   template <class T>
   void attributes(T& record) {
@@ -131,7 +131,7 @@ class File {
       h5::check(H5Gget_info(group, &info), name);
       items.resize(info.nlinks);
     }
-    File inside(group, seal_, writes_);
+    ImplantFile inside(group, seal_, writes_);
     for (std::size_t k = 0; k < items.size(); ++k) inside.group(fmt::format("{:03}", k), items[k]);
   }
 
@@ -146,7 +146,7 @@ class File {
 
 // Lists of lists are one array in the file: they are joined, written or read, and taken apart again.
 
-void contents(File& file, NeedleHistory& needle) {
+void contents(ImplantFile& file, NeedleHistory& needle) {
   file.attributes(needle);
   file.rows("steps", needle.record.steps);
   file.rows("events", needle.events);
@@ -162,7 +162,7 @@ void contents(File& file, NeedleHistory& needle) {
   }
 }
 
-void contents(File& file, RecordedStructure& structure) {
+void contents(ImplantFile& file, RecordedStructure& structure) {
   file.attributes(structure);
   std::vector<Vec3> all;
   std::vector<std::int64_t> counts;
@@ -182,7 +182,7 @@ void contents(File& file, RecordedStructure& structure) {
   file.array("cloud_mm", structure.cloud_mm, {3});
 }
 
-void contents(File& file, RecordedDose& dose) {
+void contents(ImplantFile& file, RecordedDose& dose) {
   file.attributes(dose);
   auto& size = dose.grid.size;
   std::vector<hsize_t> plane{static_cast<hsize_t>(size[1]), static_cast<hsize_t>(size[0])};
@@ -205,7 +205,7 @@ void contents(File& file, RecordedDose& dose) {
   }
 }
 
-void contents(File& file, ImplantRecord& record) {
+void contents(ImplantFile& file, ImplantRecord& record) {
   file.attributes(record);
   file.text("scenario", record.scenario_text);
   file.texts("warnings", record.warnings);
@@ -220,9 +220,9 @@ void contents(File& file, ImplantRecord& record) {
 }
 
 template <class Item>
-void File::group(const std::string& name, Item& item) {
+void ImplantFile::group(const std::string& name, Item& item) {
   const h5::Handle group = open(name);
-  File inside(group, seal_, writes_);
+  ImplantFile inside(group, seal_, writes_);
   contents(inside, item);
 }
 
@@ -270,7 +270,7 @@ ImplantRecord whole_implant_in(hid_t file) {
   if (version < 2) throw h5::Failure("written by an older version of stylet, whose seeds have fewer causes");
   Seal seal;
   ImplantRecord record;
-  File reader(file, seal, false);
+  ImplantFile reader(file, seal, false);
   contents(reader, record);
   for (const SeedHistory& seed : record.seeds) demand_shape(seed.needle < record.needles.size(), "/seeds: needle");
   if (h5::read_text_attribute(file, "content_sha256") != (version == 2 ? digest_of_version_2(record) : seal.finish()))
@@ -289,7 +289,7 @@ void write_stored_implant(const char* path, ImplantRecord record) {
   h5::write_attribute(file, "units", std::string("mm, N, s, Gy"));
   h5::write_attribute(file, "frame", std::string("LPS"));
   Seal seal;
-  File writer(file, seal, true);
+  ImplantFile writer(file, seal, true);
   contents(writer, record);
   h5::write_attribute(file, "content_sha256", seal.finish());
   if (!file.reset()) h5::fail("close");
