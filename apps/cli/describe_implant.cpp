@@ -16,7 +16,9 @@ namespace {
 Json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 std::string needles_of_implant(const ImplantRecord& record) {
-  Table table({"needle", "seeds", "depth mm", "peak force N", "deflection mm", "steps", "events"});
+  const bool dwells = record.implant == Implant::temporary;
+  Table table({dwells ? "catheter" : "needle", dwells ? "dwell positions" : "seeds", "depth mm", "peak force N",
+               "deflection mm", "steps", "events"});
   const auto row = [&](const NeedleHistory& needle, std::size_t seeds) {
     table.row({needle.name, fmt::to_string(seeds), fmt::format("{:.1f}", needle.depth_mm),
                fmt::format("{:.2f}", needle.peak_force_N), fmt::format("{:.2f}", needle.deflection_mm),
@@ -30,13 +32,15 @@ std::string needles_of_implant(const ImplantRecord& record) {
 }
 
 std::string seeds_of_implant(const ImplantRecord& record) {
-  Table table({"seed", "needle", "error mm", "left mm", "posterior mm", "superior mm", ""});
+  const bool dwells = record.implant == Implant::temporary;
+  Table table({dwells ? "dwell position" : "seed", dwells ? "catheter" : "needle", "error mm", "left mm",
+               "posterior mm", "superior mm", ""});
   for (const SeedHistory& seed : record.seeds) {
     const Vec3 error = seed.error_mm();
     table.row({fmt::to_string(seed.number + 1), record.needles[seed.needle].name, fmt::format("{:.2f}", error.norm()),
                fmt::format("{:.2f}", error.x()), fmt::format("{:.2f}", error.y()), fmt::format("{:.2f}", error.z()),
                seed.lost         ? "lost"
-               : !seed.in_tissue ? "not dropped in tissue"
+               : !seed.in_tissue ? (dwells ? "not in tissue" : "not dropped in tissue")
                                  : ""});
   }
   return table.text();
@@ -76,7 +80,9 @@ Description describe(const ImplantRecord& record) {
                      {"lost", seed.lost}});
   }
   Description out;
+  const bool dwells = record.implant == Implant::temporary;
   out.json = {{"kind", "implant"},
+              {"implant", to_string(record.implant)},
               {"version", record.version},
               {"scenario", record.scenario_name},
               {"source", record.source},
@@ -88,7 +94,7 @@ Description describe(const ImplantRecord& record) {
               {"warnings", record.warnings}};
 
   Facts facts;
-  facts.add("kind", "an implant of seeds");
+  facts.add("kind", dwells ? "a temporary implant: dwell positions in catheters" : "an implant of seeds");
   facts.add("made by", "stylet " + record.version);
   facts.add("scenario", record.scenario_name);
   facts.add("source", record.source);
@@ -96,10 +102,13 @@ Description describe(const ImplantRecord& record) {
             record.prescription_Gy > 0.0 ? fmt::format("{:g} Gy", record.prescription_Gy) : "(not said)");
   facts.add("mesh", fmt::format("{} nodes, {} tetrahedra, {} regions", record.mesh.node_count(),
                                 record.mesh.tet_count(), record.mesh.regions.size()));
-  facts.add("needles", record.stabilising.empty() ? fmt::to_string(record.needles.size())
-                                                  : fmt::format("{}, and {} that stabilise", record.needles.size(),
-                                                                record.stabilising.size()));
-  facts.add("seeds", fmt::format("{}, {} lost", record.seeds.size(), record.seeds.size() - errors.seeds));
+  facts.add(dwells ? "catheters" : "needles",
+            record.stabilising.empty()
+                ? fmt::to_string(record.needles.size())
+                : fmt::format("{}, and {} that stabilise", record.needles.size(), record.stabilising.size()));
+  facts.add(dwells ? "dwell positions" : "seeds",
+            dwells ? fmt::to_string(record.seeds.size())
+                   : fmt::format("{}, {} lost", record.seeds.size(), record.seeds.size() - errors.seeds));
   facts.add("distance from plan", mean_error_in_words(errors));
   out.text = facts.text() + "\n\n" + needles_of_implant(record) + "\n\n" + seeds_of_implant(record);
   for (const std::string& warning : record.warnings) out.text += "\n  warning: " + warning;

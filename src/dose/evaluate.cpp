@@ -199,7 +199,9 @@ void assume(DoseEvaluation& e, const DoseOptions& options) {
 
 }  // namespace
 
-const char* to_string(Implant implant) { return implant == Implant::permanent ? "permanent" : "temporary"; }
+const char* to_string(Implant implant) {
+  return implant == Implant::permanent ? "permanent" : implant == Implant::temporary ? "temporary" : "unknown";
+}
 
 Result<DoseEvaluation> evaluate_dose(const DosePlan& plan, const SourceModel& source,
                                      std::span<const DoseStructure> structures, const DoseOptions& options,

@@ -35,8 +35,8 @@ FoundErrors split_errors(const std::vector<MatchedSeed>& seeds, const Vec3& take
   const auto add = [&](const char* name, double mm2) {
     out.parts.push_back({name, mm2, out.mean_square_mm2 > 0.0 ? 100.0 * mm2 / out.mean_square_mm2 : 0.0});
   };
-  for (std::size_t c = 0; c < kSeedCauses; ++c)
-    add(to_string(static_cast<SeedCause>(c)), mean_product([&](std::size_t k) { return seeds[k].seed.cause_mm[c]; }));
+  for (const SeedCause cause : causes_of(Implant::permanent))
+    add(to_string(cause), mean_product([&](std::size_t k) { return seeds[k].seed.by(cause); }));
   if (!shift.isZero(0.0)) add("common shift", mean_product([&](std::size_t) { return shift; }));
   add("not explained by the simulation", mean_product([&](std::size_t k) { return Vec3(remainders[k] - shift); }));
   return out;

@@ -67,28 +67,6 @@ Result<std::vector<NeedleLoad>> stabilising_needles(const Scenario& scenario, co
 
 }  // namespace
 
-const char* to_string(SeedCause cause) {
-  switch (cause) {
-    case SeedCause::bend:
-      return "needle bend";
-    case SeedCause::motion:
-      return "tissue motion";
-    case SeedCause::relaxation:
-      return "tissue relaxation";
-    case SeedCause::strand:
-      return "strand";
-    case SeedCause::release:
-      return "release";
-    case SeedCause::aim:
-      return "aim";
-    case SeedCause::probe:
-      return "probe";
-    case SeedCause::wait:
-      return "planning to delivery";
-  }
-  return "";
-}
-
 Implant implant_of(std::span<const SeedHistory> seeds) {
   const bool dwells =
       std::any_of(seeds.begin(), seeds.end(), [](const SeedHistory& seed) { return seed.at_planning.has_value(); });

@@ -73,10 +73,10 @@ std::vector<PartErrors> errors_by_third(const ImplantHistory& history) {
 }
 
 std::vector<SeedCause> causes_of(Implant implant) {
-  if (implant == Implant::temporary)
-    return {SeedCause::bend, SeedCause::motion, SeedCause::relaxation, SeedCause::wait};
-  return {SeedCause::bend,    SeedCause::motion, SeedCause::relaxation, SeedCause::strand,
-          SeedCause::release, SeedCause::aim,    SeedCause::probe};
+  std::vector<SeedCause> causes;
+  for (const SeedCauseWords& words : kSeedCauses)
+    if (meaning_of(words.cause, implant) != nullptr) causes.push_back(words.cause);
+  return causes;
 }
 
 ImplantHistory history_at_planning(const ImplantHistory& history) {

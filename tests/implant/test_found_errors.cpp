@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Seeds that were found beside those that were simulated: parts of the errors, agreement, and the plan of their dose.
 #include "stylet/implant/found_errors.hpp"
+#include "stylet/implant/seed_errors.hpp"
 
 #include <gtest/gtest.h>
 
@@ -75,8 +76,8 @@ TEST(CompareFound, parts_of_the_mean_square_add_up_with_the_shift_and_without_it
       for (const ErrorPart& part : errors.parts) percent += part.percent;
       EXPECT_NEAR(percent, 100.0, 1e-9);
     }
-    EXPECT_EQ(comparison.as_found.parts.size(), kSeedCauses + 2);
-    EXPECT_EQ(comparison.without_shift.parts.size(), kSeedCauses + 1);
+    EXPECT_EQ(comparison.as_found.parts.size(), causes_of(Implant::permanent).size() + 2);
+    EXPECT_EQ(comparison.without_shift.parts.size(), causes_of(Implant::permanent).size() + 1);
     for (const auto& axis : comparison.without_shift.remainder.axes) EXPECT_NEAR(axis.mean_mm, 0.0, 1e-12);
     for (const MatchedSeed& matched : comparison.seeds) {
       Vec3 sum = matched.remainder_mm;

@@ -22,10 +22,57 @@ enum class SeedCause {
   probe,  ///< the probe displaced the tissue when the seed was dropped, and the contours of the plan are without it
   wait    ///< tissue and catheter moved against each other between planning and delivery (temporary implants)
 };
-inline constexpr std::size_t kSeedCauses = 7;  ///< those of a seed of a permanent implant, the first ones
-inline constexpr std::size_t kAllCauses = 8;
-/// "needle bend", "tissue motion", "tissue relaxation", "strand", "release", "aim", "probe", "planning to delivery"
-const char* to_string(SeedCause cause);
+
+/// A cause in words, and where it occurs. Tables, files, reports and pages are made of these.
+struct SeedCauseWords {
+  SeedCause cause{};
+  const char* name;      ///< in summary.json, in reports and in the live page
+  const char* column;    ///< beginning of its columns in tables and files
+  bool is_live;          ///< can occur to a seed that a hand drops (`stylet serve`)
+  const char* of_seed;   ///< a sentence about a seed of a permanent implant; null: it does not occur there
+  const char* of_dwell;  ///< a sentence about a dwell position of a temporary implant; null: it does not occur there
+  int since;             ///< first version of the run.h5 of an implant that has it
+};
+/// All causes, in the order of SeedCause.
+inline constexpr std::array kSeedCauses{
+    SeedCauseWords{SeedCause::bend, "needle bend", "bend", true,
+                   "The needle was bent, or did not reach its depth, when the seed left it.",
+                   "The catheter was bent, or did not reach its depth, when the images of the plan were taken.", 1},
+    SeedCauseWords{SeedCause::motion, "tissue motion", "motion", true,
+                   "The needle held the tissue displaced when the seed was dropped; the tissue has gone back since and "
+                   "has taken the seed along.",
+                   "The catheters held the tissue displaced when the images of the plan were taken, so the dwell "
+                   "position was in other tissue than planned.",
+                   1},
+    SeedCauseWords{SeedCause::relaxation, "tissue relaxation", "relaxation", true,
+                   "The tissue had crept under the needle when the seed was dropped; it has gone back since and has "
+                   "taken the seed along.",
+                   "The tissue had crept under the catheters when the images of the plan were taken.", 1},
+    SeedCauseWords{SeedCause::strand, "strand", "strand", true,
+                   "The strand holds the seed at its distance from the other seeds of the needle.", nullptr, 1},
+    SeedCauseWords{SeedCause::release, "release", "release", true,
+                   "The seed jumped along its track when it was let go.", nullptr, 1},
+    SeedCauseWords{SeedCause::aim, "aim", "aim", true,
+                   "The needle was aimed beside the plan on purpose, to make up for the other causes.", nullptr, 1},
+    SeedCauseWords{SeedCause::probe, "probe", "probe", false,
+                   "The probe held the gland displaced when the seed was dropped, and the contours of the plan were "
+                   "drawn without it; with the probe out the tissue goes back and takes the seed along.",
+                   nullptr, 1},
+    SeedCauseWords{SeedCause::wait, "planning to delivery", "wait", false, nullptr,
+                   "Tissue and catheter moved against each other between the images of the plan and the delivery.", 2},
+};
+constexpr const SeedCauseWords& words_of(SeedCause cause) { return kSeedCauses[static_cast<std::size_t>(cause)]; }
+/// "needle bend", "tissue motion", …
+constexpr const char* to_string(SeedCause cause) { return words_of(cause).name; }
+/// The sentence about a cause in an implant of a kind.
+constexpr const char* meaning_of(SeedCause cause, Implant implant) {
+  return implant == Implant::temporary ? words_of(cause).of_dwell : words_of(cause).of_seed;
+}
+
+/// The parts of a seed's error by cause [mm] LPS.
+struct SeedCauseParts : std::array<Vec3, kSeedCauses.size()> {
+  SeedCauseParts() { fill(Vec3::Zero()); }
+};
 
 /// A dwell position when the images of the plan are taken, with all catheters in place.
 struct DwellAtPlanning {
@@ -48,8 +95,7 @@ struct SeedHistory {
   bool lost = false;                           ///< it has left the patient and gives no dose
   bool in_tissue = true;                       ///< whether the tissue point where it was dropped could be found
   std::optional<DwellAtPlanning> at_planning;  ///< of a dwell position; empty for a seed
-  std::array<Vec3, kAllCauses> cause_mm{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero(),
-                                        Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  SeedCauseParts cause_mm;
 
   /// Whether both are the same drop, wherever they rest. A seed that is taken back and dropped again is another one.
   [[nodiscard]] bool is_same_drop(const SeedHistory& other) const {

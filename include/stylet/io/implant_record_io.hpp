@@ -37,6 +37,7 @@ struct ImplantRecord {
   double needle_diameter_mm = 0.0;
   double needle_length_mm = 0.0;
   double seed_length_mm = 0.0;
+  Implant implant = Implant::permanent;
   TetMesh mesh;
   std::vector<NeedleHistory> needles;      ///< in the order in which they were inserted
   std::vector<NeedleHistory> stabilising;  ///< those without seeds
@@ -47,14 +48,15 @@ struct ImplantRecord {
   std::string summary;  ///< the text of summary.json
 };
 
-/// Collects the record of an implant. Texts that are longer than the file keeps them are cut.
+/// Collects the record of an implant.
 ImplantRecord implant_record(const ImplantOutcome& outcome);
 
 /// Writes a record as HDF5 (docs/results.md). The file appears whole or not at all.
 /// Errors: the file cannot be written.
 Result<> write_implant_record(ImplantRecord record, const std::filesystem::path& path);
 
-/// Reads the run.h5 of an implant. Errors: no such file, not an HDF5 file, a recording of an insertion or another file,
+/// Reads the run.h5 of an implant. Files of version 2 say whether it is temporary in their summary, and lack the places
+/// of dwell positions at planning. Errors: no such file, not an HDF5 file, a recording of an insertion or another file,
 /// written by a newer version, damaged.
 Result<ImplantRecord> read_implant_record(const std::filesystem::path& path);
 

@@ -174,12 +174,14 @@ Handle string_type(std::size_t bytes) {
   return type;
 }
 
-Handle bool_type() {
+Handle enum_type(int count, const char* (*name)(int value)) {
   Handle type(check(H5Tenum_create(H5T_NATIVE_INT8), "create type"), H5Tclose);
-  const std::int8_t no = 0, yes = 1;
-  check(H5Tenum_insert(type, "FALSE", &no), "create type");
-  check(H5Tenum_insert(type, "TRUE", &yes), "create type");
+  for (std::int8_t value = 0; value < count; ++value) check(H5Tenum_insert(type, name(value), &value), "create type");
   return type;
+}
+
+Handle bool_type() {
+  return enum_type(2, [](int value) { return value == 0 ? "FALSE" : "TRUE"; });
 }
 
 Handle compound_type(std::size_t bytes) { return {check(H5Tcreate(H5T_COMPOUND, bytes), "create type"), H5Tclose}; }
@@ -312,6 +314,11 @@ std::vector<hsize_t> extents(hid_t data) {
   std::vector<hsize_t> shape(static_cast<std::size_t>(check(H5Sget_simple_extent_ndims(space), "read extents")));
   check(H5Sget_simple_extent_dims(space, shape.data(), nullptr), "read extents");
   return shape;
+}
+
+bool has_member(hid_t data, const char* name) {
+  const Handle rows(check(H5Dget_type(data), "read type"), H5Tclose);
+  return H5Tget_class(rows) == H5T_COMPOUND && H5Tget_member_index(rows, name) >= 0;
 }
 
 std::uint64_t place(hid_t data) {

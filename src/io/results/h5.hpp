@@ -46,7 +46,7 @@ Status check(Status status, const char* action) {
   return status;
 }
 
-/// An identifier and the call that closes it.
+/// An identifier and the call that closes it; null: it is not closed.
 class Handle {
  public:
   Handle() = default;
@@ -61,7 +61,7 @@ class Handle {
 
   operator hid_t() const { return id_; }  // NOLINT(google-explicit-constructor): is used as the identifier
   /// Closes the object; returns false if HDF5 reports that closing, and therefore the last writing, failed.
-  bool reset() { return id_ < 0 || close_(std::exchange(id_, -1)) >= 0; }
+  bool reset() { return id_ < 0 || close_ == nullptr || close_(std::exchange(id_, -1)) >= 0; }
 
  private:
   hid_t id_ = -1;
@@ -83,6 +83,14 @@ Handle array_type(hid_t element, hsize_t count);
 Handle string_type(std::size_t bytes);  ///< fixed length, UTF-8, null-padded
 Handle bool_type();                     ///< the enumeration of one byte that h5py reads as bool
 Handle compound_type(std::size_t bytes);
+/// An enumeration of one byte with the values 0 … count − 1.
+Handle enum_type(int count, const char* (*name)(int value));
+inline hid_t number_type(double) { return H5T_NATIVE_DOUBLE; }
+inline hid_t number_type(float) { return H5T_NATIVE_FLOAT; }
+inline hid_t number_type(std::int64_t) { return H5T_NATIVE_INT64; }
+inline hid_t number_type(std::int32_t) { return H5T_NATIVE_INT32; }
+inline hid_t number_type(std::uint32_t) { return H5T_NATIVE_UINT32; }
+inline hid_t number_type(char) { return H5T_NATIVE_UINT8; }
 void insert_member(hid_t compound, const char* name, std::size_t offset, hid_t member);
 
 /// Attributes: texts are scalars, numbers are 1-D arrays. All texts are written with a fixed length, because HDF5
@@ -116,6 +124,9 @@ Handle growing_dataset(hid_t parent, const char* name, hid_t type, std::span<con
 
 /// Extents of an open dataset.
 std::vector<hsize_t> extents(hid_t data);
+
+/// Whether the rows of an open dataset have a column.
+bool has_member(hid_t data, const char* name);
 
 /// Position in the file of the values of a contiguous dataset; 0 if it has no values.
 std::uint64_t place(hid_t data);

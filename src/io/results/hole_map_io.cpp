@@ -2,8 +2,9 @@
 #include "stylet/io/hole_map_io.hpp"
 
 #include "fixed_number.hpp"
-#include "gland_json.hpp"
 #include "output_folder.hpp"
+#include "record/json.hpp"
+#include "record/summary_columns.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -13,7 +14,7 @@ using namespace results;
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using record::Json;
 
 constexpr int kMapDigits = 6;  // mm: a nanometre
 
@@ -22,6 +23,8 @@ std::string field(const std::optional<double>& value) { return value ? fixed(*va
 std::string length_field(const std::optional<Vec3>& v) {
   return v && v->allFinite() ? fixed(v->norm(), kMapDigits) : "";
 }
+
+Json anatomical_json(const std::optional<Vec3>& v) { return v ? record::anatomical(*v) : Json(nullptr); }
 
 /// The remark on a hole: why it has no figures, or remarks of its prediction.
 std::string remark_of(const HoleRow& row) {
@@ -40,12 +43,12 @@ Json hole_json(const HoleRow& row) {
             {"depth_mm", row.depth_mm},
             {"in_target_mm", row.in_target_mm},
             {"clearance_mm", clearance},
-            {"shift_at_break_mm", vector_json(prediction.shift_at_break_mm)},
-            {"shift_max_mm", vector_json(prediction.shift_max_mm)},
-            {"tip_error_mm", vector_json(prediction.tip_error_mm)},
+            {"shift_at_break_mm", anatomical_json(prediction.shift_at_break_mm)},
+            {"shift_max_mm", anatomical_json(prediction.shift_max_mm)},
+            {"tip_error_mm", anatomical_json(prediction.tip_error_mm)},
             {"predicted", row.prediction.has_value()},
             {"remark", remark_of(row)}};
-  if (prediction.in_place) json["in_place"] = in_place_json(*prediction.in_place);
+  if (prediction.in_place) json["in_place"] = record::json_of(*prediction.in_place);
   return json;
 }
 

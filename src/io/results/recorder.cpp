@@ -18,79 +18,25 @@ Recorder::~Recorder() {
   if (!closed_) (void)close(nullptr);
 }
 
-Result<> Recorder::add_step(const Step& step) {
-  const std::lock_guard lock(mutex_);
-  if (error_) return *error_;
-  steps_.push_back(step);
-  return Ok{};
-}
-
-Result<> Recorder::add_frame(StoredFrame frame) {
-  const std::lock_guard lock(mutex_);
-  if (error_) return *error_;
-  frames_.push_back(std::move(frame));
-  return Ok{};
-}
-
-Result<> Recorder::add_event(const Event& event) {
-  const std::lock_guard lock(mutex_);
-  if (error_) return *error_;
-  events_.push_back(event);
-  return Ok{};
-}
-
-Result<> Recorder::add_probe_move(const ProbeMove& move) {
-  const std::lock_guard lock(mutex_);
-  if (error_) return *error_;
-  moves_.push_back(move);
-  return Ok{};
-}
-
-Result<> Recorder::add_act(const SeedAct& act) {
-  const std::lock_guard lock(mutex_);
-  if (error_) return *error_;
-  acts_.push_back(act);
-  return Ok{};
-}
-
-Result<> Recorder::add_dose(const RecordedScore& dose) {
-  const std::lock_guard lock(mutex_);
-  if (error_) return *error_;
-  doses_.push_back(dose);
-  return Ok{};
-}
-
 Result<> Recorder::write_pending() {
-  std::vector<Step> steps;
-  std::vector<StoredFrame> frames;
-  std::vector<Event> events;
-  std::vector<ProbeMove> moves;
-  std::vector<SeedAct> acts;
-  std::vector<RecordedScore> doses;
+  Pending pending;
   {
     const std::lock_guard lock(mutex_);
-    steps.swap(steps_);
-    frames.swap(frames_);
-    events.swap(events_);
-    moves.swap(moves_);
-    acts.swap(acts_);
-    doses.swap(doses_);
+    pending.swap(pending_);
   }
-  if (steps.empty() && frames.empty() && events.empty() && moves.empty() && acts.empty() && doses.empty()) return Ok{};
-  if (auto done = writer_.append_steps(steps); !done) return done;
-  for (const StoredFrame& frame : frames) {
-    if (auto done = writer_.append_frame(frame); !done) return done;
-  }
-  if (!events.empty()) {
-    if (auto done = writer_.append_events(events); !done) return done;
-  }
-  if (!moves.empty()) {
-    if (auto done = writer_.append_probe_moves(moves); !done) return done;
-  }
-  if (!acts.empty() || !doses.empty()) {
-    if (auto done = writer_.append_seeds(acts, doses); !done) return done;
-  }
-  return writer_.flush();
+  Result<> done = Ok{};
+  bool any = false;
+  const auto write = [&](const auto& records) {
+    any = any || !records.empty();
+    if constexpr (requires { records.front().displacement; }) {
+      for (const StoredFrame& frame : records)
+        if (done.ok()) done = writer_.append_frame(frame);
+    } else if (done.ok()) {
+      done = writer_.append(std::span(records));
+    }
+  };
+  std::apply([&](const auto&... records) { (write(records), ...); }, pending);
+  return done.ok() && any ? writer_.flush() : done;
 }
 
 void Recorder::run(const std::stop_token& stop) {

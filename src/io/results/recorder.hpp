@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <tuple>
 #include <vector>
 
 namespace stylet::results {
@@ -18,13 +19,15 @@ class Recorder {
   explicit Recorder(RunFileWriter writer);
   ~Recorder();
 
-  // All functions return the first error of the thread, if there was one.
-  Result<> add_step(const Step& step);
-  Result<> add_frame(StoredFrame frame);
-  Result<> add_event(const Event& event);
-  Result<> add_probe_move(const ProbeMove& move);
-  Result<> add_act(const SeedAct& act);
-  Result<> add_dose(const RecordedScore& dose);
+  /// Adds a step, a frame, an event, a move of the probe, an act of a seed or a dose. Returns the first error of the
+  /// thread, if there was one.
+  template <class T>
+  Result<> add(T record) {
+    const std::lock_guard lock(mutex_);
+    if (error_) return *error_;
+    std::get<std::vector<T>>(pending_).push_back(std::move(record));
+    return Ok{};
+  }
 
   /// Writes the remaining data and the summary, if given, and closes the file. Nothing can be added afterwards.
   Result<> close(const Summary* summary);
@@ -36,13 +39,10 @@ class Recorder {
   RunFileWriter writer_;  ///< used only by the thread until it has ended
   std::mutex mutex_;
   std::condition_variable_any wake_;
-  std::vector<Step> steps_;           ///< not yet written
-  std::vector<StoredFrame> frames_;   ///< not yet written
-  std::vector<Event> events_;         ///< not yet written
-  std::vector<ProbeMove> moves_;      ///< not yet written
-  std::vector<SeedAct> acts_;         ///< not yet written
-  std::vector<RecordedScore> doses_;  ///< not yet written
-  std::optional<Error> error_;        ///< first failure of the thread
+  using Pending = std::tuple<std::vector<Step>, std::vector<StoredFrame>, std::vector<Event>, std::vector<ProbeMove>,
+                             std::vector<SeedAct>, std::vector<RecordedScore>>;
+  Pending pending_;             ///< not yet written
+  std::optional<Error> error_;  ///< first failure of the thread
   bool closed_ = false;
   std::jthread thread_;  ///< last member, so that it starts when the others exist
 };

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/io/results_writer.hpp"
 
-#include "forces_csv.hpp"
-#include "gland_csv.hpp"
 #include "output_folder.hpp"
 #include "paraview.hpp"
 #include "pictures/pictures.hpp"
+#include "record/csv.hpp"
+#include "record/run_columns.hpp"
 #include "recorder.hpp"
 #include "report/report_html.hpp"
 #include "stylet/io/hole_map_io.hpp"
@@ -65,9 +65,9 @@ Result<> write_from_recording(const fs::path& folder, const Summary& summary,
   run->summary = summary;
   const Moments moments = find_moments(run->frames);
   const auto regions = region_views(run->mesh, run->info.target_regions);
-  if (auto done = write_file(folder / "forces.csv", forces_csv(run->steps)); !done) return done;
+  if (auto done = write_file(folder / "forces.csv", record::csv_of(run->steps)); !done) return done;
   if (!summary.gland_path.empty()) {
-    if (auto done = write_file(folder / "gland.csv", gland_csv(summary.gland_path)); !done) return done;
+    if (auto done = write_file(folder / "gland.csv", record::csv_of(summary.gland_path)); !done) return done;
   }
   if (map) {
     if (auto done = write_file(folder / "map.csv", hole_map_csv(*map)); !done) return done;
@@ -144,7 +144,7 @@ Result<std::unique_ptr<ResultsWriter>> ResultsWriter::open(const fs::path& folde
 
 Result<> ResultsWriter::add_step(const Step& step) {
   if (!std::isfinite(step.time_s)) return not_finite("step", step.time_s);
-  return parts_->recorder.add_step(step);
+  return parts_->recorder.add(step);
 }
 
 Result<> ResultsWriter::add_frame(const Frame& frame) {
@@ -159,7 +159,7 @@ Result<> ResultsWriter::add_frame(const Frame& frame) {
   stored.frame.displacement.resize(0);
   stored.displacement.reserve(static_cast<std::size_t>(frame.displacement.size()));
   for (const double u : frame.displacement) stored.displacement.push_back(static_cast<float>(u));
-  return parts_->recorder.add_frame(std::move(stored));
+  return parts_->recorder.add(std::move(stored));
 }
 
 void ResultsWriter::add_probe(const ProbeReport& probe) { parts_->probe = probe; }

@@ -3,6 +3,7 @@
 
 #include "h5_mesh.hpp"
 #include "output_folder.hpp"
+#include "record/attributes.hpp"
 #include "run_file_format.hpp"
 #include "summary_json.hpp"
 
@@ -25,23 +26,24 @@ constexpr hsize_t kStepChunk = 1024, kTableChunk = 64, kPointChunk = 2048, kText
 
 void write_info(hid_t file, const RunInfo& info) {
   h5::write_attribute(file, "format", std::string(kRunFileFormat));
-  h5::write_attribute(file, "format_version", std::array{kRunFileVersion});
-  h5::write_attribute(file, "version", info.version);
-  h5::write_attribute(file, "scenario_name", info.scenario_name);
-  h5::write_attribute(file, "method", info.method);
+  h5::write_attribute(file, "format_version", std::array{run_file_version()});
   h5::write_attribute(file, "units", std::string("mm, N, s"));
   h5::write_attribute(file, "frame", std::string("LPS"));
-  h5::write_attribute(file, "needle_diameter_mm", std::array{info.needle_diameter_mm});
-  h5::write_attribute(file, "needle_length_mm", std::array{info.needle_length_mm});
-  h5::write_attribute(file, "entry_mm", std::span<const double>(info.entry_mm.data(), 3));
-  h5::write_attribute(file, "direction", std::span<const double>(info.direction.data(), 3));
-  h5::write_attribute(file, "target_regions", std::span<const int>(info.target_regions));
+  record::write_attributes(file, info);
   h5::write_text(file, "scenario", info.scenario_text);
   h5::write_texts(file, "supports", info.supports);
   h5::write_texts(file, "warnings", info.warnings);
   std::vector<std::vector<std::string>> rows;
   for (const ParameterRow& p : info.parameters) rows.push_back({p.name, p.value, p.unit, p.source});
   h5::write_text_table(file, "parameters", kParameterColumns, rows);
+}
+
+void write_plan(hid_t group, const RecordedPlan& plan) {
+  const StoredPlan stored{plan, record::rows_of(std::span(plan.needles)), record::rows_of(std::span(plan.seeds))};
+  h5::write_attribute(group, "plan_sha256", plan_digest(stored));
+  record::write_attributes(group, plan);
+  record::write_rows(group, "needles", stored.needles);
+  record::write_rows(group, "planned_seeds", stored.seeds);
 }
 
 fs::path hidden_name(const fs::path& path, const std::string& process) {
@@ -90,32 +92,25 @@ Result<RunFileWriter> RunFileWriter::create(const fs::path& path, const RunInfo&
     write_info(w.file_, info);
     h5::write_attribute(w.file_, "start_sha256", start_digest(info, mesh));
 
-    w.step_type_ = step_row_type();
-    w.frame_type_ = frame_row_type();
-    w.contact_type_ = contact_row_type();
-    w.event_type_ = event_row_type();
-    w.probe_type_ = probe_row_type();
-    w.end_type_ = end_row_type();
-    const StepRow no_step;
-    const FrameRow no_frame;
-    const ContactRow no_contact;
-    const EventRow no_event;
-    const ProbeRow no_move;
-    const EndRow no_end;
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const std::array<hsize_t, 2> per_node{mesh.nodes.size(), 3};
     const std::array<hsize_t, 1> point{3};
     const h5::Handle frames = h5::group(w.file_, "frames");
-    w.steps_ = h5::growing_dataset(w.file_, "steps", w.step_type_, {}, kStepChunk, &no_step);
-    w.frame_table_ = h5::growing_dataset(frames, "table", w.frame_type_, {}, kTableChunk, &no_frame);
+    w.table<Step>() = {w.file_, "steps", kStepChunk};
+    w.table<FrameRow>() = {frames, "table", kTableChunk};
     w.displacement_ = h5::growing_dataset(frames, "displacement_mm", H5T_NATIVE_FLOAT, per_node, 1, &nan);
-    w.needle_ = h5::growing_dataset(frames, "needle_mm", H5T_NATIVE_DOUBLE, point, kPointChunk, &kMissing);
-    w.contacts_ = h5::growing_dataset(frames, "contacts", w.contact_type_, {}, kPointChunk, &no_contact);
-    w.events_ = h5::growing_dataset(w.file_, "events", w.event_type_, {}, kTableChunk, &no_event);
-    w.probe_ = h5::growing_dataset(w.file_, "probe", w.probe_type_, {}, kTableChunk, &no_move);
+    w.needle_ = h5::growing_dataset(frames, "needle_mm", H5T_NATIVE_DOUBLE, point, kPointChunk, &record::kNotANumber);
+    w.table<ContactView>() = {frames, "contacts", kPointChunk};
+    w.table<Event>() = {w.file_, "events", kTableChunk};
+    w.table<ProbeMove>() = {w.file_, "probe", kTableChunk};
     w.summary_ = h5::growing_dataset(w.file_, "summary_json", H5T_NATIVE_UINT8, {}, kTextChunk, nullptr);
-    w.end_ = h5::growing_dataset(w.file_, "end", w.end_type_, {}, 1, &no_end);
-    if (plan != nullptr) w.seeds_.emplace(w.file_, *plan);
+    w.table<RunEnd>() = {w.file_, "end", 1};
+    if (plan != nullptr) {
+      const h5::Handle implant = h5::group(w.file_, "implant");
+      write_plan(implant, *plan);
+      w.table<SeedAct>() = {implant, "acts", kTableChunk};
+      w.table<RecordedScore>() = {implant, "doses", kTableChunk};
+    }
     h5::check(H5Fstart_swmr_write(w.file_), "start recording");
   });
   if (done && make_way) done = make_way();
@@ -129,76 +124,42 @@ Result<RunFileWriter> RunFileWriter::create(const fs::path& path, const RunInfo&
   return done.error();
 }
 
-Result<> RunFileWriter::append_steps(std::span<const Step> steps) {
-  std::vector<StepRow> rows;
-  rows.reserve(steps.size());
-  std::transform(steps.begin(), steps.end(), std::back_inserter(rows), [](const Step& s) { return to_row(s); });
-  return guarded([&] {
-    h5::append_rows(steps_, step_type_, rows.size(), rows.data());
-    written_.steps += static_cast<std::int64_t>(rows.size());
-  });
+template <class T>
+Result<> RunFileWriter::append(std::span<const T> records) {
+  if (records.empty() || !table<T>().is_open()) return Ok{};
+  return guarded([&] { table<T>().append(record::rows_of(records)); });
 }
+template Result<> RunFileWriter::append(std::span<const Step>);
+template Result<> RunFileWriter::append(std::span<const Event>);
+template Result<> RunFileWriter::append(std::span<const ProbeMove>);
+template Result<> RunFileWriter::append(std::span<const SeedAct>);
+template Result<> RunFileWriter::append(std::span<const RecordedScore>);
 
 Result<> RunFileWriter::append_frame(const StoredFrame& stored) {
   const Frame& frame = stored.frame;
-  std::vector<ContactRow> contacts;
-  for (const ContactView& c : frame.contacts) contacts.push_back(to_row(c));
-  FrameRow row;
-  row.time_s = frame.time_s;
-  row.base_depth_mm = frame.base_depth_mm;
-  put_text(row.label, frame.label);
-  row.needle_first = needle_points_;
-  row.needle_count = static_cast<std::int64_t>(frame.needle.size());
-  row.contact_first = contact_count_;
-  row.contact_count = static_cast<std::int64_t>(contacts.size());
-  row.check = check_of(row, stored.displacement, frame.needle, contacts);
+  const auto contacts = record::rows_of(std::span<const ContactView>(frame.contacts));
+  record::Rows<FrameRow> row;
+  row.add(
+      {frame.time_s, frame.base_depth_mm, frame.label, needle_points_, static_cast<std::int64_t>(frame.needle.size()),
+       table<ContactView>().count(), static_cast<std::int64_t>(contacts.size())},
+      parts_of_frame(stored.displacement, frame.needle, contacts.bytes));
   return guarded([&] {
     h5::append_rows(displacement_, H5T_NATIVE_FLOAT, 1, stored.displacement.data());
     h5::append_rows(needle_, H5T_NATIVE_DOUBLE, frame.needle.size(), frame.needle.data());
-    h5::append_rows(contacts_, contact_type_, contacts.size(), contacts.data());
-    h5::append_rows(frame_table_, frame_type_, 1, &row);
-    needle_points_ += row.needle_count;
-    contact_count_ += row.contact_count;
-    ++written_.frames;
-  });
-}
-
-Result<> RunFileWriter::append_events(std::span<const Event> events) {
-  std::vector<EventRow> rows;
-  for (const Event& e : events) rows.push_back(to_row(e));
-  return guarded([&] {
-    h5::append_rows(events_, event_type_, rows.size(), rows.data());
-    written_.events += static_cast<std::int64_t>(rows.size());
-  });
-}
-
-Result<> RunFileWriter::append_probe_moves(std::span<const ProbeMove> moves) {
-  std::vector<ProbeRow> rows;
-  for (const ProbeMove& move : moves) rows.push_back(to_row(move));
-  return guarded([&] {
-    h5::append_rows(probe_, probe_type_, rows.size(), rows.data());
-    written_.probe_moves += static_cast<std::int64_t>(rows.size());
-  });
-}
-
-Result<> RunFileWriter::append_seeds(std::span<const SeedAct> acts, std::span<const RecordedScore> doses) {
-  if (!seeds_) return Ok{};
-  return guarded([&] {
-    seeds_->append(acts);
-    seeds_->append(doses);
-    written_.acts += static_cast<std::int64_t>(acts.size());
-    written_.doses += static_cast<std::int64_t>(doses.size());
+    table<ContactView>().append(contacts);
+    table<FrameRow>().append(row);
+    needle_points_ += static_cast<std::int64_t>(frame.needle.size());
   });
 }
 
 Result<> RunFileWriter::append_summary(const Summary& summary) {
-  const std::size_t there = std::min(static_cast<std::size_t>(written_.events), summary.events.size());
-  if (auto done = append_events(std::span(summary.events).subspan(there)); !done) return done;
+  const std::size_t there = std::min(static_cast<std::size_t>(table<Event>().count()), summary.events.size());
+  if (auto done = append(std::span(summary.events).subspan(there)); !done) return done;
   const std::string text = summary_json(summary);
   return guarded([&] {
     h5::append_rows(summary_, H5T_NATIVE_UINT8, text.size(), text.data());
     written_.summary_bytes = static_cast<std::int64_t>(text.size());
-    written_.summary_check = check_of(text);
+    written_.summary_check = record::check_of(text.data(), text.size());
   });
 }
 
@@ -209,18 +170,17 @@ Result<> RunFileWriter::flush() {
 Result<> RunFileWriter::close() {
   Result<> ended = guarded([&] {
     h5::check(H5Fflush(file_, H5F_SCOPE_GLOBAL), "flush");  // all other data must reach the disk before /end
-    written_.check = check_of(written_);
-    h5::append_rows(end_, end_type_, 1, &written_);
+    written_.steps = table<Step>().count();
+    written_.frames = table<FrameRow>().count();
+    written_.events = table<Event>().count();
+    written_.acts = table<SeedAct>().count();
+    written_.doses = table<RecordedScore>().count();
+    written_.probe_moves = table<ProbeMove>().count();
+    table<RunEnd>().append(record::rows_of(std::span<const RunEnd>(&written_, 1)));
   });
   Result<> closed = guarded([&] {
-    bool good = true;
-    for (h5::Handle* data :
-         {&steps_, &frame_table_, &displacement_, &needle_, &contacts_, &events_, &probe_, &summary_, &end_}) {
-      good = data->reset() && good;
-    }
-    if (seeds_) good = seeds_->close() && good;
-    for (h5::Handle* type : {&step_type_, &frame_type_, &contact_type_, &event_type_, &probe_type_, &end_type_})
-      type->reset();
+    bool good = std::apply([](auto&... table) { return (table.close() & ...); }, tables_);
+    for (h5::Handle* data : {&displacement_, &needle_, &summary_}) good = data->reset() && good;
     if (!file_.reset() || !good) h5::fail("close");
   });
   return ended ? closed : ended;

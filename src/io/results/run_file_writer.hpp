@@ -2,15 +2,14 @@
 #pragma once
 
 #include "run_file_format.hpp"
-#include "seed_tables.hpp"
 #include "stylet/core/result.hpp"
 #include "stylet/geom/tet_mesh.hpp"
 #include "stylet/sim/recording.hpp"
 
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <span>
+#include <tuple>
 
 namespace stylet::results {
 
@@ -33,12 +32,11 @@ class RunFileWriter {
                                       const std::function<Result<>()>& make_way = {},
                                       const RecordedPlan* plan = nullptr);
 
-  Result<> append_steps(std::span<const Step> steps);
+  /// Writes steps, events, moves of the probe, acts of seeds or doses. Of acts and doses, nothing is written if no plan
+  /// was given to create().
+  template <class T>
+  Result<> append(std::span<const T> records);
   Result<> append_frame(const StoredFrame& stored);
-  Result<> append_events(std::span<const Event> events);
-  Result<> append_probe_moves(std::span<const ProbeMove> moves);
-  /// Writes acts and doses of the plan that was given to create(); without a plan, nothing.
-  Result<> append_seeds(std::span<const SeedAct> acts, std::span<const RecordedScore> doses);
   /// Writes the summary, and those of its events that are not in the file yet. To be called once, at the end.
   Result<> append_summary(const Summary& summary);
   Result<> flush();  ///< writes all appended data to the file
@@ -52,12 +50,16 @@ class RunFileWriter {
 
   std::filesystem::path path_;
   h5::Handle file_;
-  h5::Handle step_type_, frame_type_, contact_type_, event_type_, probe_type_, end_type_;
-  h5::Handle steps_, frame_table_, displacement_, needle_, contacts_, events_, probe_, summary_, end_;
-  std::optional<SeedTables> seeds_;
+  template <class T>
+  record::Table<T>& table() {
+    return std::get<record::Table<T>>(tables_);
+  }
+  std::tuple<record::Table<Step>, record::Table<FrameRow>, record::Table<ContactView>, record::Table<Event>,
+             record::Table<ProbeMove>, record::Table<SeedAct>, record::Table<RecordedScore>, record::Table<RunEnd>>
+      tables_;
+  h5::Handle displacement_, needle_, summary_;
   std::int64_t needle_points_ = 0;
-  std::int64_t contact_count_ = 0;
-  EndRow written_;
+  RunEnd written_;
 };
 
 }  // namespace stylet::results

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/io/run_recorder.hpp"
 
-#include "forces_csv.hpp"
+#include "record/csv.hpp"
+#include "record/run_columns.hpp"
 #include "recorder.hpp"
 
 namespace stylet {
@@ -21,20 +22,20 @@ Result<std::unique_ptr<RunRecorder>> RunRecorder::open(const std::filesystem::pa
 RunRecorder::RunRecorder(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 RunRecorder::~RunRecorder() = default;
 
-Result<> RunRecorder::add_step(const Step& step) { return parts_->recorder.add_step(step); }
-Result<> RunRecorder::add_event(const Event& event) { return parts_->recorder.add_event(event); }
-Result<> RunRecorder::add_probe_move(const ProbeMove& move) { return parts_->recorder.add_probe_move(move); }
-Result<> RunRecorder::add_act(const SeedAct& act) { return parts_->recorder.add_act(act); }
-Result<> RunRecorder::add_dose(const RecordedScore& dose) { return parts_->recorder.add_dose(dose); }
+Result<> RunRecorder::add_step(const Step& step) { return parts_->recorder.add(step); }
+Result<> RunRecorder::add_event(const Event& event) { return parts_->recorder.add(event); }
+Result<> RunRecorder::add_probe_move(const ProbeMove& move) { return parts_->recorder.add(move); }
+Result<> RunRecorder::add_act(const SeedAct& act) { return parts_->recorder.add(act); }
+Result<> RunRecorder::add_dose(const RecordedScore& dose) { return parts_->recorder.add(dose); }
 Result<> RunRecorder::add_frame(const Frame& frame) {
   results::StoredFrame stored;
   stored.displacement.reserve(static_cast<std::size_t>(frame.displacement.size()));
   for (const double value : frame.displacement) stored.displacement.push_back(static_cast<float>(value));
   stored.frame = frame;
   stored.frame.displacement.resize(0);
-  return parts_->recorder.add_frame(std::move(stored));
+  return parts_->recorder.add(std::move(stored));
 }
 
-std::string forces_csv_text(std::span<const Step> steps) { return results::forces_csv(steps); }
+std::string forces_csv_text(std::span<const Step> steps) { return record::csv_of(steps); }
 
 }  // namespace stylet

@@ -2,6 +2,7 @@
 #include "stored_run.hpp"
 
 #include "h5_mesh.hpp"
+#include "record/attributes.hpp"
 
 namespace stylet::results {
 namespace fs = std::filesystem;
@@ -18,12 +19,6 @@ void demand(bool condition, const char* what) {
   if (!condition) throw NotARun(what);
 }
 
-std::vector<double> read_numbers(hid_t file, const char* name, std::size_t count) {
-  auto values = h5::read_double_attribute(file, name);
-  if (values.size() != count) throw NotARun(std::string("attribute ") + name + " has the wrong size");
-  return values;
-}
-
 std::vector<ParameterRow> read_parameters(hid_t file) {
   const auto column = [&](std::size_t k) { return h5::read_text_column(file, "parameters", kParameterColumns[k]); };
   auto names = column(0), values = column(1), units = column(2), sources = column(3);
@@ -35,14 +30,7 @@ std::vector<ParameterRow> read_parameters(hid_t file) {
 
 RunInfo read_info(hid_t file) {
   RunInfo info;
-  info.version = h5::read_text_attribute(file, "version");
-  info.scenario_name = h5::read_text_attribute(file, "scenario_name");
-  info.method = h5::read_text_attribute(file, "method");
-  info.needle_diameter_mm = read_numbers(file, "needle_diameter_mm", 1)[0];
-  info.needle_length_mm = read_numbers(file, "needle_length_mm", 1)[0];
-  info.entry_mm = Vec3(read_numbers(file, "entry_mm", 3).data());
-  info.direction = Vec3(read_numbers(file, "direction", 3).data());
-  info.target_regions = h5::read_int_attribute(file, "target_regions");
+  record::read_attributes(file, info);
   info.scenario_text = h5::read_text(file, "scenario");
   info.supports = h5::read_texts(file, "supports");
   info.warnings = h5::read_texts(file, "warnings");
@@ -50,33 +38,35 @@ RunInfo read_info(hid_t file) {
   return info;
 }
 
-/// All rows of a dataset with one axis.
-template <class Row>
-std::vector<Row> read_table(hid_t parent, const char* name, hid_t type) {
-  const h5::Handle set = h5::dataset(parent, name);
-  const auto shape = h5::extents(set);
-  demand(shape.size() == 1, name);
-  std::vector<Row> rows(shape[0]);
-  h5::read_rows(set, type, 0, rows.size(), rows.data());
-  return rows;
-}
-
 void read_frames(hid_t file, StoredRun& run) {
   const h5::Handle group = h5::open_group(file, "frames");
   const h5::Handle displacement = h5::dataset(group, "displacement_mm"), needle = h5::dataset(group, "needle_mm");
   // The writer adds a frame's row after its data, so all data of the rows are there if the table is read first.
-  run.frames = read_table<FrameRow>(group, "table", frame_row_type());
+  run.frames = record::read_rows<FrameRow>(group, "table");
   const auto shape = h5::extents(displacement);
   demand(shape.size() == 3 && shape[1] == run.mesh.nodes.size() && shape[2] == 3,
          "/frames/displacement_mm must be (f, n, 3)");
-  run.frames.resize(std::min<std::size_t>(run.frames.size(), shape[0]));
-  run.displacement.resize(run.frames.size() * shape[1] * 3);
-  h5::read_rows(displacement, H5T_NATIVE_FLOAT, 0, run.frames.size(), run.displacement.data());
+  const std::size_t frames = std::min<std::size_t>(run.frames.size(), shape[0]);
+  run.frames.bytes.resize(frames * record::row_bytes<FrameRow>());
+  run.displacement.resize(frames * shape[1] * 3);
+  h5::read_rows(displacement, H5T_NATIVE_FLOAT, 0, frames, run.displacement.data());
   const auto points = h5::extents(needle);
   demand(points.size() == 2 && points[1] == 3, "/frames/needle_mm must be (p, 3)");
   run.needle.resize(points[0]);
   h5::read_rows(needle, H5T_NATIVE_DOUBLE, 0, points[0], run.needle.data());
-  run.contacts = read_table<ContactRow>(group, "contacts", contact_row_type());
+  run.contacts = record::read_rows<ContactView>(group, "contacts");
+}
+
+void read_seeds(hid_t file, StoredSeeds& seeds) {
+  if (h5::check(H5Lexists(file, "implant", H5P_DEFAULT), "look for /implant") == 0) return;
+  const h5::Handle group = h5::open_group(file, "implant");
+  seeds.digest = h5::read_text_attribute(group, "plan_sha256");
+  record::read_attributes(group, seeds.plan.head);
+  seeds.plan.needles = record::read_rows<RecordedPlan::Needle>(group, "needles");
+  seeds.plan.seeds = record::read_rows<RecordedPlan::Seed>(group, "planned_seeds");
+  // A dose is written after its acts, so all acts of the doses are there if the doses are read first.
+  seeds.doses = record::read_rows<RecordedScore>(group, "doses");
+  seeds.acts = record::read_rows<SeedAct>(group, "acts");
 }
 
 StoredRun read_all(hid_t file) {
@@ -90,23 +80,24 @@ StoredRun read_all(hid_t file) {
   }
   demand(format == kRunFileFormat, "an HDF5 file, but not a recorded run");
   const auto version = h5::read_int_attribute(file, "format_version");
-  demand(version.size() == 1 && version[0] <= kRunFileVersion, "written by a newer version of stylet");
+  demand(version.size() == 1 && version[0] <= run_file_version(), "written by a newer version of stylet");
   StoredRun run;
   run.format_version = version[0];
   const bool checks = run.format_version >= kFirstWithChecks;
   if (checks) {
     run.start_digest = h5::read_text_attribute(file, "start_sha256");
-    run.end = read_table<EndRow>(file, "end", end_row_type());  // read first, since the writer adds it last
+    run.end = record::read_rows<RunEnd>(file, "end");  // read first, since the writer adds it last
   }
   run.mesh = h5::read_mesh(file);
   run.info = read_info(file);
-  run.steps = read_table<StepRow>(file, "steps", step_row_type());
+  run.steps = record::read_rows<Step>(file, "steps");
   read_frames(file, run);
-  run.events = read_table<EventRow>(file, "events", event_row_type());
-  if (run.format_version >= kFirstWithSeeds) run.seeds = read_seed_tables(file);
-  if (run.format_version >= kFirstWithProbe) run.probe_moves = read_table<ProbeRow>(file, "probe", probe_row_type());
-  const auto summary = read_table<char>(file, "summary_json", H5T_NATIVE_UINT8);
-  run.summary.assign(summary.begin(), summary.end());
+  run.events = record::read_rows<Event>(file, "events");
+  if (run.format_version >= kFirstWithSeeds) read_seeds(file, run.seeds);
+  if (run.format_version >= kFirstWithProbe) run.probe_moves = record::read_rows<ProbeMove>(file, "probe");
+  const h5::Handle summary = h5::dataset(file, "summary_json");
+  run.summary.resize(h5::extents(summary).at(0));
+  h5::read_rows(summary, H5T_NATIVE_UINT8, 0, run.summary.size(), run.summary.data());
   return run;
 }
 

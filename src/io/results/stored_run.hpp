@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "detail/wire.hpp"
+#include "record/wire_columns.hpp"
 #include "run_file_format.hpp"
-#include "seed_tables.hpp"
 #include "stylet/core/result.hpp"
 
 #include <filesystem>
@@ -16,22 +15,30 @@ namespace stylet::results {
 inline constexpr const char* kGiveARecording =
     "Give a run.h5 that stylet wrote; if it is damaged, use another copy or repeat the run";
 
+/// The group /implant as stored, before the checks. Without needles the file has none.
+struct StoredSeeds {
+  std::string digest;  ///< of the plan
+  StoredPlan plan;
+  record::Rows<SeedAct> acts;
+  record::Rows<RecordedScore> doses;
+};
+
 /// The content of a run.h5 as stored, before the checks.
 struct StoredRun {
   int format_version = 0;
   std::string start_digest;  ///< empty in files without checks
   RunInfo info;
   TetMesh mesh;
-  std::vector<StepRow> steps;
-  std::vector<FrameRow> frames;
+  record::Rows<Step> steps;
+  record::Rows<FrameRow> frames;
   std::vector<float> displacement;  ///< [mm] (frames × 3n)
   std::vector<Vec3> needle;
-  std::vector<ContactRow> contacts;
-  std::vector<EventRow> events;
-  std::vector<ProbeRow> probe_moves;
+  record::Rows<ContactView> contacts;
+  record::Rows<Event> events;
+  record::Rows<ProbeMove> probe_moves;
   StoredSeeds seeds;
   std::string summary;
-  std::vector<EndRow> end;  ///< empty while the run goes on and if it was killed
+  record::Rows<RunEnd> end;  ///< empty while the run goes on and if it was killed
 };
 
 /// Reads a run.h5 completely. To be called in a child process (detail/guard.hpp) while the parent holds an
@@ -39,10 +46,11 @@ struct StoredRun {
 Result<StoredRun> parse_run_file(const std::filesystem::path& path);
 
 // Serialisation from the child process to its parent (detail/wire.hpp).
-void fields(auto& wire, StoredSeeds& s) {
-  wire(s.digest, s.needles, s.planned, s.current, s.seed_length_mm, s.seed_diameter_mm, s.prescription_Gy, s.source,
-       s.acts, s.doses);
+void fields(auto& wire, StoredPlan& p) {
+  record::each_field<record::kFile>(p.head, [&](const record::Field&, auto& value) { wire(value); });
+  wire(p.needles, p.seeds);
 }
+void fields(auto& wire, StoredSeeds& s) { wire(s.digest, s.plan, s.acts, s.doses); }
 void fields(auto& wire, StoredRun& r) {
   wire(r.format_version, r.start_digest, r.info, r.mesh, r.steps, r.frames, r.displacement, r.needle, r.contacts,
        r.events, r.probe_moves, r.seeds, r.summary, r.end);
@@ -54,33 +62,8 @@ namespace stylet {
 
 void fields(auto& wire, ParameterRow& p) { wire(p.name, p.value, p.unit, p.source); }
 void fields(auto& wire, RunInfo& i) {
-  wire(i.version, i.scenario_name, i.scenario_text, i.parameters, i.supports, i.warnings, i.method,
-       i.needle_diameter_mm, i.needle_length_mm, i.target_regions, i.entry_mm, i.direction);
+  record::each_field<record::kFile>(i, [&](const record::Field&, auto& value) { wire(value); });
+  wire(i.scenario_text, i.parameters, i.supports, i.warnings);
 }
 
 }  // namespace stylet
-
-namespace stylet::detail {
-
-template <>
-inline constexpr bool is_plain<results::StepRow> = true;
-template <>
-inline constexpr bool is_plain<results::FrameRow> = true;
-template <>
-inline constexpr bool is_plain<results::ContactRow> = true;
-template <>
-inline constexpr bool is_plain<results::EventRow> = true;
-template <>
-inline constexpr bool is_plain<results::ProbeRow> = true;
-template <>
-inline constexpr bool is_plain<results::EndRow> = true;
-template <>
-inline constexpr bool is_plain<results::PlanNeedleRow> = true;
-template <>
-inline constexpr bool is_plain<results::PlanSeedRow> = true;
-template <>
-inline constexpr bool is_plain<results::ActRow> = true;
-template <>
-inline constexpr bool is_plain<results::DoseRow> = true;
-
-}  // namespace stylet::detail

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tests of the run.h5 of an implant.
+#include "stylet/implant/seed_errors.hpp"
 #include "stylet/io/implant_record_io.hpp"
 #include "stylet/io/recording_io.hpp"
 #include "synthetic_implant.hpp"
@@ -149,19 +150,36 @@ TEST(ImplantRecord, has_the_seeds_of_the_summary) {
       EXPECT_EQ(seed.planned_mm[axis], seeds[k]["planned_mm"][static_cast<std::size_t>(axis)].get<double>());
       EXPECT_EQ(seed.rest_mm[axis], seeds[k]["rest_mm"][static_cast<std::size_t>(axis)].get<double>());
     }
-    for (std::size_t c = 0; c < kSeedCauses; ++c)
-      EXPECT_EQ(seed.cause_mm[c].z(), seeds[k]["why"][to_string(static_cast<SeedCause>(c))][2].get<double>());
+    for (const SeedCause cause : causes_of(Implant::permanent))
+      EXPECT_EQ(seed.by(cause).z(), seeds[k]["why"][to_string(cause)][2].get<double>());
   }
 }
 
 TEST(ImplantRecord, keeps_all_causes_of_seeds_and_of_dwell_positions) {
   ImplantRecord wrote = invented_record();
-  for (std::size_t c = 0; c < kAllCauses; ++c) wrote.seeds[1].cause_mm[c] = Vec3(1.0, 2.0, static_cast<double>(c));
+  for (std::size_t c = 0; c < kSeedCauses.size(); ++c)
+    wrote.seeds[1].cause_mm[c] = Vec3(1.0, 2.0, static_cast<double>(c));
   const RecordFolder folder;
   ASSERT_TRUE(write_implant_record(wrote, folder.path / "run.h5").ok());
   const auto read = read_implant_record(folder.path / "run.h5");
   ASSERT_TRUE(read.ok()) << read.error().message();
-  EXPECT_EQ(read->seeds[1].cause_mm, wrote.seeds[1].cause_mm);
+  EXPECT_TRUE(read->seeds[1].cause_mm == wrote.seeds[1].cause_mm);
+}
+
+TEST(ImplantRecord, of_a_temporary_implant_says_so_and_has_the_places_at_planning) {
+  ImplantRecord wrote = invented_record();
+  EXPECT_EQ(wrote.implant, Implant::permanent);
+  wrote.implant = Implant::temporary;
+  wrote.seeds[0].at_planning = DwellAtPlanning{Vec3(1, 2, 3), Vec3(4, 5, 6)};
+  const RecordFolder folder;
+  ASSERT_TRUE(write_implant_record(wrote, folder.path / "run.h5").ok());
+  const auto read = read_implant_record(folder.path / "run.h5");
+  ASSERT_TRUE(read.ok()) << read.error().message();
+  EXPECT_EQ(read->implant, Implant::temporary);
+  ASSERT_TRUE(read->seeds[0].at_planning);
+  EXPECT_EQ(read->seeds[0].at_planning->room_mm, Vec3(1, 2, 3));
+  EXPECT_EQ(read->seeds[0].at_planning->tissue_mm, Vec3(4, 5, 6));
+  EXPECT_FALSE(read->seeds[1].at_planning);
 }
 
 TEST(ImplantRecord, is_no_recording_of_an_insertion_and_says_what_to_do) {

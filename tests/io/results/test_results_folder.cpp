@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tests of the result folder: its content after a successful run and after a failed one, and errors of writing.
+#include "record/csv.hpp"
+#include "record/run_columns.hpp"
 #include "report_page.hpp"
-#include "results/forces_csv.hpp"
-#include "results/gland_csv.hpp"
 #include "results/output_folder.hpp"
 #include "results/summary_json.hpp"
 #include "stylet/io/mesh_io.hpp"
@@ -104,8 +104,8 @@ TEST(ResultFolder, holds_every_file_with_the_numbers_of_the_run) {
   std::sort(expected.begin(), expected.end());
   EXPECT_EQ(names_in(folder), expected);
 
-  EXPECT_EQ(file_text(folder / "forces.csv"), results::forces_csv(run.steps));
-  EXPECT_EQ(file_text(folder / "gland.csv"), results::gland_csv(run.summary.gland_path));
+  EXPECT_EQ(file_text(folder / "forces.csv"), record::csv_of(run.steps));
+  EXPECT_EQ(file_text(folder / "gland.csv"), record::csv_of(run.summary.gland_path));
   EXPECT_EQ(file_text(folder / "summary.json"), results::summary_json(run.summary));
   const auto recording = read_recording(folder / "run.h5");
   ASSERT_TRUE(recording.ok()) << recording.error().message();
@@ -267,7 +267,7 @@ TEST(ResultFolder, a_run_killed_at_any_moment_has_nothing_of_an_earlier_one_besi
       if (name.starts_with(".")) continue;
       const std::string text = file_text(folder.path() / name);
       if (name == "forces.csv") {
-        EXPECT_EQ(text, results::forces_csv(later.steps));
+        EXPECT_EQ(text, record::csv_of(later.steps));
       } else if (name == "summary.json" || name == "report.html") {
         EXPECT_NE(text.find("later"), std::string::npos) << name;
       }
@@ -333,7 +333,7 @@ TEST(ResultFolder, a_full_disk_fails_the_run_and_leaves_no_half_file) {
     EXPECT_NE(name, "report.html");
     EXPECT_NE(name, "summary.json");
   }
-  EXPECT_EQ(file_text(folder.path() / "forces.csv"), results::forces_csv(run.steps));
+  EXPECT_EQ(file_text(folder.path() / "forces.csv"), record::csv_of(run.steps));
   const auto back = read_recording(folder.path() / "run.h5");
   EXPECT_TRUE(back.ok()) << back.error().message();
 }

@@ -38,6 +38,22 @@ StoredFrame stored(const Frame& frame) {
 
 double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
+/// The type of rows without some columns, at the places of the rows in memory.
+template <class T, class LeftOut>
+h5::Handle type_without(const LeftOut& left_out) {
+  const h5::Handle now = record::row_type<T>();
+  h5::Handle then = h5::compound_type(H5Tget_size(now));
+  for (unsigned k = 0; k < static_cast<unsigned>(H5Tget_nmembers(now)); ++k) {
+    char* text = H5Tget_member_name(now, k);
+    const std::string name = text;
+    H5free_memory(text);
+    if (!left_out(name))
+      h5::insert_member(then, name.c_str(), H5Tget_member_offset(now, k),
+                        h5::Handle(H5Tget_member_type(now, k), H5Tclose));
+  }
+  return then;
+}
+
 void expect_same_step(const Step& a, const Step& b) {
   EXPECT_EQ(a.time_s, b.time_s);
   EXPECT_EQ(a.dt_s, b.dt_s);
@@ -85,8 +101,8 @@ TEST(RunFile, holds_everything_that_was_written) {
     auto writer = RunFileWriter::create(path, run.info, run.mesh);
     ASSERT_TRUE(writer.ok()) << writer.error().message();
     Recorder recorder(std::move(*writer));
-    for (const auto& step : run.steps) ASSERT_TRUE(recorder.add_step(step).ok());
-    for (const auto& frame : run.frames) ASSERT_TRUE(recorder.add_frame(stored(frame)).ok());
+    for (const auto& step : run.steps) ASSERT_TRUE(recorder.add(step).ok());
+    for (const auto& frame : run.frames) ASSERT_TRUE(recorder.add(stored(frame)).ok());
     const auto closed = recorder.close(&run.summary);
     ASSERT_TRUE(closed.ok()) << closed.error().message();
   }
@@ -139,7 +155,7 @@ TEST(RunFile, holds_steps_at_rest_as_a_number_and_refuses_one_that_does_not_fit_
       Step second = first;
       second.time_s = first.time_s + 4e-3;
       second.rest_steps = rest_steps;
-      ASSERT_TRUE(writer->append_steps(std::array{first, second}).ok());
+      ASSERT_TRUE(writer->append(std::span<const Step>(std::array{first, second})).ok());
       ASSERT_TRUE(writer->close().ok());
     }
     const auto back = read_recording(path);
@@ -164,28 +180,16 @@ TEST(RunFile, of_the_first_version_has_its_steps_without_what_they_were_given) {
   }
   {  // in earlier versions the table of steps had no columns dt_s, base_x_mm … base_qz and flags
     const h5::Handle file(h5::check(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "open"), H5Fclose);
-    const h5::Handle now = step_row_type();
-    const h5::Handle then(h5::check(H5Tcreate(H5T_COMPOUND, sizeof(StepRow)), "type"), H5Tclose);
-    int left_out = 0;
-    for (unsigned k = 0; k < static_cast<unsigned>(H5Tget_nmembers(now)); ++k) {
-      char* text = H5Tget_member_name(now, k);
-      const std::string name = text;
-      H5free_memory(text);
-      if (name == "dt_s" || name == "flags" || (name.rfind("base_", 0) == 0 && name != "base_depth_mm")) {
-        ++left_out;
-        continue;
-      }
-      const h5::Handle type(H5Tget_member_type(now, k), H5Tclose);
-      h5::check(H5Tinsert(then, name.c_str(), H5Tget_member_offset(now, k), type), "insert");
-    }
-    ASSERT_EQ(left_out, 9);
+    const auto steps = record::rows_of(std::span<const Step>(run.steps));
+    const h5::Handle then = type_without<Step>([&](const std::string& name) {
+      return name == "dt_s" || name == "flags" || (name.starts_with("base_") && name != "base_depth_mm");
+    });
+    ASSERT_EQ(H5Tget_nmembers(then), 27 - 9);
     h5::check(H5Ldelete(file, "steps", H5P_DEFAULT), "delete");
     h5::check(H5Adelete(file, "format_version"), "delete");
     h5::write_attribute(file, "format_version", std::array{1});
-    std::vector<StepRow> rows;
-    for (const Step& step : run.steps) rows.push_back(to_row(step));
-    const h5::Handle steps = h5::growing_dataset(file, "steps", then, {}, 1024, nullptr);
-    h5::append_rows(steps, then, rows.size(), rows.data());
+    h5::append_rows(h5::growing_dataset(file, "steps", then, {}, 1024, nullptr), then, steps.size(),
+                    steps.bytes.data());
   }
   const auto back = read_recording(path);
   ASSERT_TRUE(back.ok()) << back.error().message();
@@ -224,8 +228,8 @@ TEST(RunFile, is_readable_half_a_second_behind_while_the_run_goes_on) {
   auto writer = RunFileWriter::create(path, run.info, run.mesh);
   ASSERT_TRUE(writer.ok()) << writer.error().message();
   Recorder recorder(std::move(*writer));
-  for (const auto& step : run.steps) ASSERT_TRUE(recorder.add_step(step).ok());
-  ASSERT_TRUE(recorder.add_frame(stored(run.frames.front())).ok());
+  for (const auto& step : run.steps) ASSERT_TRUE(recorder.add(step).ok());
+  ASSERT_TRUE(recorder.add(stored(run.frames.front())).ok());
   std::this_thread::sleep_for(std::chrono::milliseconds(500));  // the run is busy and adds nothing
 
   int status = 0;
@@ -261,8 +265,8 @@ TEST(RunFile, a_killed_run_stays_readable_and_loses_at_most_a_second) {
       Step step = run.steps.front();
       for (std::size_t n = 0;; ++n) {
         step.time_s = now_s();  // the same clock in parent and child
-        if (!recorder.add_step(step)) _exit(2);
-        if (n % 20 == 0 && !recorder.add_frame(stored(run.frames[(n / 20) % run.frames.size()]))) _exit(3);
+        if (!recorder.add(step)) _exit(2);
+        if (n % 20 == 0 && !recorder.add(stored(run.frames[(n / 20) % run.frames.size()]))) _exit(3);
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
       }
     }
@@ -347,7 +351,7 @@ TEST(RunFile, foreign_and_damaged_files_are_refused_with_a_message) {
 
   const fs::path whole = folder.path() / "whole.h5", half = folder.path() / "half.h5";
   auto writer = RunFileWriter::create(whole, run.info, run.mesh);
-  ASSERT_TRUE(writer.ok() && writer->append_steps(run.steps).ok() && writer->close().ok());
+  ASSERT_TRUE(writer.ok() && writer->append(std::span(run.steps)).ok() && writer->close().ok());
   const std::string bytes = stylet::testing::file_text(whole);
   std::ofstream(half, std::ios::binary) << bytes.substr(0, bytes.size() / 2);
   ASSERT_FALSE(read_recording(half).ok());
@@ -360,12 +364,20 @@ std::string bytes_of(const stylet::testing::SyntheticRun& run, bool finished) {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "run.h5";
   auto writer = RunFileWriter::create(path, run.info, run.mesh);
-  bool good = writer.ok() && writer->append_steps(run.steps).ok() && writer->append_events(run.summary.events).ok();
+  bool good =
+      writer.ok() && writer->append(std::span(run.steps)).ok() && writer->append(std::span(run.summary.events)).ok();
   for (const Frame& frame : run.frames) good = good && writer->append_frame(stored(frame)).ok();
   good =
       good && writer->flush().ok() && (!finished || (writer->append_summary(run.summary).ok() && writer->close().ok()));
   EXPECT_TRUE(good);
   return stylet::testing::file_text(path);
+}
+
+template <class T>
+std::string packed(const T& record) {
+  std::string bytes;
+  record::pack(bytes, record);
+  return bytes;
 }
 
 void expect_same_run(const RunRecording& a, const RunRecording& b) {
@@ -375,8 +387,7 @@ void expect_same_run(const RunRecording& a, const RunRecording& b) {
   ASSERT_EQ(a.frames.size(), b.frames.size());
   for (std::size_t k = 0; k < a.frames.size(); ++k) expect_same_frame(a.frames[k], b.frames[k]);
   ASSERT_EQ(a.events.size(), b.events.size());
-  for (std::size_t k = 0; k < a.events.size(); ++k)
-    EXPECT_EQ(check_of(to_row(a.events[k])), check_of(to_row(b.events[k])));
+  for (std::size_t k = 0; k < a.events.size(); ++k) EXPECT_EQ(packed(a.events[k]), packed(b.events[k]));
   ASSERT_EQ(a.summary.has_value(), b.summary.has_value());
   if (a.summary) {
     EXPECT_EQ(summary_json(*a.summary), summary_json(*b.summary));
@@ -468,9 +479,10 @@ void write_with_seeds(const fs::path& path, const SyntheticRun& run, bool finish
   const RecordedPlan plan = two_needles();
   auto writer = RunFileWriter::create(path, run.info, run.mesh, {}, &plan);
   ASSERT_TRUE(writer.ok()) << writer.error().message();
-  ASSERT_TRUE(writer->append_steps(run.steps).ok());
+  ASSERT_TRUE(writer->append(std::span(run.steps)).ok());
   const std::vector<RecordedScore> scores{{RecordedScore::kOfPlan, 2, 160.0, 110.0, 97.0}, {2, 2, 20.0, 14.0, 3.0}};
-  ASSERT_TRUE(writer->append_seeds(three_acts(), scores).ok());
+  ASSERT_TRUE(writer->append(std::span<const SeedAct>(three_acts())).ok());
+  ASSERT_TRUE(writer->append(std::span(scores)).ok());
   ASSERT_TRUE((finished ? writer->close() : writer->flush()).ok());
 }
 
@@ -541,7 +553,7 @@ TEST(RunFile, of_a_live_session_holds_the_way_of_the_probe) {
   for (const bool finished : {true, false}) {
     auto writer = RunFileWriter::create(path, run.info, run.mesh);
     ASSERT_TRUE(writer.ok()) << writer.error().message();
-    ASSERT_TRUE(writer->append_probe_moves(moves).ok());
+    ASSERT_TRUE(writer->append(std::span(moves)).ok());
     ASSERT_TRUE((finished ? writer->close() : writer->flush()).ok());
     const auto back = read_recording(path);
     ASSERT_TRUE(back.ok()) << back.error().message();
@@ -583,7 +595,7 @@ TEST(RunFile, with_a_changed_place_of_the_probe_is_refused) {
   {
     auto writer = RunFileWriter::create(path, run.info, run.mesh);
     ASSERT_TRUE(writer.ok()) << writer.error().message();
-    ASSERT_TRUE(writer->append_probe_moves(std::vector<ProbeMove>(2)).ok());
+    ASSERT_TRUE(writer->append(std::span<const ProbeMove>(std::vector<ProbeMove>(2))).ok());
     ASSERT_TRUE(writer->close().ok());
   }
   {
@@ -609,20 +621,20 @@ TEST(RunFile, of_the_version_before_seeds_is_read_with_its_checks) {
     const h5::Handle file(h5::check(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "open"), H5Fclose);
     h5::check(H5Adelete(file, "format_version"), "delete");
     h5::write_attribute(file, "format_version", std::array{4});
-    EndRow row;
-    h5::read_rows(h5::dataset(file, "end"), end_row_type(), 0, 1, &row);
-    row.check = check_of(row, 4);
-    const h5::Handle then(h5::check(H5Tcreate(H5T_COMPOUND, sizeof(EndRow)), "type"), H5Tclose);
-    for (const char* name : {"steps", "frames", "events", "summary_bytes", "summary_check", "check"}) {
-      const h5::Handle now = end_row_type();
-      const auto k = static_cast<unsigned>(H5Tget_member_index(now, name));
-      const h5::Handle type(H5Tget_member_type(now, k), H5Tclose);
-      h5::check(H5Tinsert(then, name, H5Tget_member_offset(now, k), type), "insert");
-    }
+    auto row = record::read_rows<RunEnd>(file, "end");
+    const auto is_later = [](const std::string& name) {
+      return name == "acts" || name == "doses" || name == "probe_moves";
+    };
+    const h5::Handle then = type_without<RunEnd>(is_later);
+    std::uint32_t check = 0;
+    row.each_value(0, [&](std::span<const char> value, const record::Column& column) {
+      if (!is_later(column.name)) check = record::check_of(value.data(), value.size(), check);
+    });
+    std::memcpy(row.bytes.data() + row.bytes.size() - sizeof check, &check, sizeof check);
     h5::check(H5Ldelete(file, "end", H5P_DEFAULT), "delete");
     h5::check(H5Ldelete(file, "probe", H5P_DEFAULT), "delete");
     const h5::Handle end = h5::growing_dataset(file, "end", then, {}, 1, nullptr);
-    h5::append_rows(end, then, 1, &row);
+    h5::append_rows(end, then, 1, row.bytes.data());
   }
   const auto back = read_recording(path);
   ASSERT_TRUE(back.ok()) << back.error().message();
@@ -667,7 +679,7 @@ TEST(RunFile, a_damaged_head_is_refused_whether_or_not_the_run_has_ended) {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "run.h5", bad = folder.path() / "bad.h5";
   auto writer = RunFileWriter::create(path, run.info, run.mesh);
-  ASSERT_TRUE(writer.ok() && writer->append_steps(run.steps).ok() && writer->flush().ok());
+  ASSERT_TRUE(writer.ok() && writer->append(std::span(run.steps)).ok() && writer->flush().ok());
   const std::string growing = stylet::testing::file_text(path);
   ASSERT_TRUE(writer->close().ok());
   const std::string ended = stylet::testing::file_text(path);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tests of the texts of forces.csv, gland.csv, map.csv and summary.json.
-#include "results/forces_csv.hpp"
-#include "results/gland_csv.hpp"
+#include "record/csv.hpp"
+#include "record/run_columns.hpp"
 #include "results/summary_json.hpp"
 #include "stylet/io/hole_map_io.hpp"
 #include "synthetic_run.hpp"
@@ -35,7 +35,7 @@ std::vector<std::string> keys_of(const nlohmann::ordered_json& object) {
 
 TEST(ForcesCsv, has_exactly_the_documented_columns) {
   EXPECT_EQ(
-      forces_csv({}),
+      record::csv_of(std::vector<Step>{}),
       "time_s,base_depth_mm,force_axial_N,force_sagittal_N,force_lateral_N,torque_x_Nmm,torque_y_Nmm,torque_z_Nmm,"
       "tip_x_mm,tip_y_mm,tip_z_mm,tip_state,contacts,sticking,iterations,step_us\n");
 }
@@ -54,7 +54,7 @@ TEST(ForcesCsv, one_line_per_step_with_fixed_digits) {
   step.sticking = 3;
   step.iterations = 2;
   step.step_us = 412.34;
-  const auto lines = lines_of(forces_csv({&step, 1}));
+  const auto lines = lines_of(record::csv_of(std::span<const Step>(&step, 1)));
   ASSERT_EQ(lines.size(), 2U);
   EXPECT_EQ(lines[1],
             "1.000500,-2.500000,0.333333333,0.000000000,-0.250000000,1.000000000,-2.000000000,3.500000000,"
@@ -63,9 +63,9 @@ TEST(ForcesCsv, one_line_per_step_with_fixed_digits) {
 
 TEST(ForcesCsv, the_same_run_gives_the_same_bytes_apart_from_step_us) {
   auto one = stylet::testing::synthetic_run(), other = stylet::testing::synthetic_run();
-  EXPECT_EQ(forces_csv(one.steps), forces_csv(other.steps));
+  EXPECT_EQ(record::csv_of(one.steps), record::csv_of(other.steps));
   for (auto& step : other.steps) step.step_us += 17;
-  const auto a = lines_of(forces_csv(one.steps)), b = lines_of(forces_csv(other.steps));
+  const auto a = lines_of(record::csv_of(one.steps)), b = lines_of(record::csv_of(other.steps));
   ASSERT_EQ(a.size(), one.steps.size() + 1);
   for (std::size_t k = 1; k < a.size(); ++k) {
     EXPECT_NE(a[k], b[k]);
@@ -75,7 +75,7 @@ TEST(ForcesCsv, the_same_run_gives_the_same_bytes_apart_from_step_us) {
 
 TEST(GlandCsv, has_the_documented_columns_in_patient_directions_and_planes) {
   const GlandStep step{1.0005, -2.5, {0.25, -0.5, 1.0 / 3}, {1.0, 2.0, -1e-9}};  // about LR, AP and SI
-  const auto lines = lines_of(gland_csv({&step, 1}));
+  const auto lines = lines_of(record::csv_of(std::span<const GlandStep>(&step, 1)));
   ASSERT_EQ(lines.size(), 2U);
   EXPECT_EQ(lines[0],
             "time_s,base_depth_mm,shift_LR_mm,shift_AP_mm,shift_SI_mm,rotation_coronal_deg,rotation_sagittal_deg,"

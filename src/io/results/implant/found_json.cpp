@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "implant/found_json.hpp"
 
+#include "implant/shown_seeds.hpp"
+#include "record/json.hpp"
 #include "stylet/io/dose_results.hpp"
 
 #include <algorithm>
@@ -22,25 +24,6 @@ OrderedJson found_errors_json(const FoundErrors& errors) {
           {"parts", parts}};
 }
 
-OrderedJson matched_json(const MatchedSeed& matched, const ImplantHistory& history, const FoundComparison& comparison) {
-  OrderedJson why;
-  for (std::size_t k = 0; k < kSeedCauses; ++k)
-    why[to_string(static_cast<SeedCause>(k))] = list_of(matched.seed.cause_mm[k]);
-  return {{"number", matched.seed.number + 1},
-          {"needle", history.needles[matched.seed.needle].name},
-          {"found_number", matched.found + 1},
-          {"planned_mm", list_of(matched.seed.planned_mm)},
-          {"dropped_mm", list_of(matched.seed.dropped_mm)},
-          {"rest_mm", list_of(matched.seed.rest_mm)},
-          {"found_mm", list_of(matched.found_mm)},
-          {"error_mm", matched.error_mm().norm()},
-          {"error_xyz_mm", list_of(matched.error_mm())},
-          {"why", why},
-          {"remainder_xyz_mm", list_of(matched.remainder_mm)},
-          {"remainder_without_shift_xyz_mm", list_of(matched.remainder_mm - comparison.matching.shift_mm)},
-          {"ambiguous", matched.ambiguous}};
-}
-
 }  // namespace
 
 OrderedJson agreement_json(const Agreement& agreement) {
@@ -52,7 +35,8 @@ OrderedJson found_json(const ImplantHistory& history, const FoundImplant& found)
   const FoundComparison& comparison = found.comparison;
   const SeedMatching& matching = comparison.matching;
   OrderedJson seeds = OrderedJson::array(), not_found = OrderedJson::array(), extra = OrderedJson::array();
-  for (const MatchedSeed& matched : comparison.seeds) seeds.push_back(matched_json(matched, history, comparison));
+  for (const MatchedSeed& matched : comparison.seeds)
+    seeds.push_back(record::json_of(shown_found(matched.seed, &matched, history, comparison)));
   for (const std::size_t k : matching.not_found) not_found.push_back(history.seeds[k].number + 1);
   for (const std::size_t k : matching.extra) {
     const FoundSeed& seed = found.seeds.seeds[k];

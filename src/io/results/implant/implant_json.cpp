@@ -2,7 +2,9 @@
 #include "implant/found_json.hpp"
 #include "implant/json_parts.hpp"
 #include "implant/oedema_section.hpp"
+#include "implant/shown_seeds.hpp"
 #include "probe_json.hpp"
+#include "record/json.hpp"
 #include "stylet/core/version.hpp"
 #include "stylet/io/dose_results.hpp"
 #include "stylet/io/implant_results.hpp"
@@ -26,57 +28,8 @@ OrderedJson parts_json(const std::vector<PartErrors>& parts) {
   return rows;
 }
 
-OrderedJson seed_json(const SeedHistory& seed, const ImplantHistory& history) {
-  OrderedJson why;
-  for (const SeedCause cause : causes_of(Implant::permanent)) why[to_string(cause)] = list_of(seed.by(cause));
-  return {{"number", seed.number + 1},
-          {"needle", history.needles[seed.needle].name},
-          {"planned_mm", list_of(seed.planned_mm)},
-          {"dropped_mm", list_of(seed.dropped_mm)},
-          {"rest_mm", list_of(seed.rest_mm)},
-          {"axis", list_of(seed.axis)},
-          {"error_mm", seed.error_mm().norm()},
-          {"error_xyz_mm", list_of(seed.error_mm())},
-          {"dropped_s", seed.dropped_s},
-          {"lost", seed.lost},
-          {"in_tissue", seed.in_tissue},
-          {"why", why}};
-}
-
-/// @param dwell_s of the plan
-OrderedJson dwell_json(const SeedHistory& dwell, const ImplantHistory& history, double dwell_s) {
-  OrderedJson why;
-  for (const SeedCause cause : causes_of(Implant::temporary)) why[to_string(cause)] = list_of(dwell.by(cause));
-  const DwellAtPlanning then = dwell.at_planning.value_or(DwellAtPlanning{});
-  return {{"number", dwell.number + 1},
-          {"catheter", history.needles[dwell.needle].name},
-          {"dwell_s", dwell_s},
-          {"planned_mm", list_of(dwell.planned_mm)},
-          {"planning_room_mm", list_of(then.room_mm)},
-          {"planning_mm", list_of(then.tissue_mm)},
-          {"delivery_room_mm", list_of(dwell.dropped_mm)},
-          {"delivery_mm", list_of(dwell.rest_mm)},
-          {"axis", list_of(dwell.axis)},
-          {"error_mm", dwell.error_mm().norm()},
-          {"error_xyz_mm", list_of(dwell.error_mm())},
-          {"in_tissue", dwell.in_tissue},
-          {"why", why}};
-}
-
 OrderedJson shift_json(const std::optional<Vec3>& shift_mm) {
   return shift_mm ? list_of(*shift_mm) : OrderedJson(nullptr);
-}
-
-OrderedJson needle_json(const NeedleHistory& needle) {
-  return {{"name", needle.name},
-          {"entry_mm", list_of(needle.entry_mm)},
-          {"direction", list_of(needle.direction)},
-          {"depth_mm", needle.depth_mm},
-          {"peak_force_N", needle.peak_force_N},
-          {"deflection_mm", needle.deflection_mm},
-          {"gland_shift_mm", list_of(needle.gland_shift_mm)},
-          {"steps", needle.steps},
-          {"seconds", needle.seconds}};
 }
 
 /// The goals of the plan beside those of the implant. @param found those of the found seeds; null: none are given
@@ -116,11 +69,8 @@ std::string implant_json(const ImplantOutcome& outcome) {
   const OrderedJson delivered = OrderedJson::parse(dose_json(outcome.delivered));
   OrderedJson seeds = OrderedJson::array(), needles = OrderedJson::array(), why = OrderedJson::array();
   const bool temporary = implant_of(history.seeds) == Implant::temporary;
-  for (const SeedHistory& seed : history.seeds) {
-    seeds.push_back(temporary ? dwell_json(seed, history, outcome.planned.plan.sources[seed.number].dwell_s)
-                              : seed_json(seed, history));
-  }
-  for (const NeedleHistory& needle : history.needles) needles.push_back(needle_json(needle));
+  for (const SeedHistory& seed : history.seeds) seeds.push_back(record::json_of(results::shown_seed(seed, outcome)));
+  for (const NeedleHistory& needle : history.needles) needles.push_back(record::json_of(needle));
   for (const CauseOfErrors& cause : causes_of_errors(history.seeds)) {
     why.push_back({{"cause", to_string(cause.cause)},
                    {"mean_mm", cause.mean_mm},

@@ -18,19 +18,6 @@ using namespace results;
 
 namespace {
 
-/// Steps and events as a row of the file keeps them: long names of regions are cut.
-NeedleHistory as_kept(NeedleHistory needle) {
-  for (Event& event : needle.events) event = from_row(to_row(event));
-  for (Step& step : needle.record.steps) step = from_row(to_row(step));
-  return needle;
-}
-
-std::vector<NeedleHistory> all_as_kept(const std::vector<NeedleHistory>& needles) {
-  std::vector<NeedleHistory> kept;
-  for (const NeedleHistory& needle : needles) kept.push_back(as_kept(needle));
-  return kept;
-}
-
 RecordedDose recorded_dose(const DoseEvaluation& dose, const std::vector<double>& dose_Gy) {
   return {dose.grid, dose_Gy, dvh_at(dose, dose_Gy).percent};
 }
@@ -48,9 +35,10 @@ ImplantRecord implant_record(const ImplantOutcome& outcome) {
   r.needle_diameter_mm = scenario.needle.diameter_mm;
   r.needle_length_mm = scenario.needle.length_mm;
   r.seed_length_mm = outcome.seed_length_mm;
+  r.implant = implant_of(outcome.history.seeds);
   r.mesh = outcome.mesh;
-  r.needles = all_as_kept(outcome.history.needles);
-  r.stabilising = all_as_kept(outcome.history.stabilising);
+  r.needles = outcome.history.needles;
+  r.stabilising = outcome.history.stabilising;
   r.seeds = outcome.history.seeds;
   for (const StructureDose& s : outcome.delivered.structures)
     r.structures.push_back({s.name, s.region, s.type, s.colour, s.dvh.volume_cc(), s.contours, s.cloud});
@@ -65,7 +53,7 @@ Result<> write_implant_record(ImplantRecord record, const fs::path& path) {
   return detail::write_whole(path, [&](const fs::path& temporary) -> Result<> {
     const h5::LibraryTurn turn;
     try {
-      write_stored_implant(temporary.c_str(), record);
+      write_stored_implant(temporary.c_str(), std::move(record));
       return Ok{};
     } catch (const h5::Failure& e) {
       return write_error(path, e.what());

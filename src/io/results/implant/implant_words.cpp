@@ -180,38 +180,6 @@ std::string capital(std::string noun) {
   return noun;
 }
 
-const char* meaning_of(SeedCause cause, Implant implant) {
-  const bool temporary = implant == Implant::temporary;
-  switch (cause) {
-    case SeedCause::bend:
-      return temporary ? "The catheter was bent, or did not reach its depth, when the images of the plan were taken."
-                       : "The needle was bent, or did not reach its depth, when the seed left it.";
-    case SeedCause::motion:
-      return temporary
-                 ? "The catheters held the tissue displaced when the images of the plan were taken, so the dwell "
-                   "position was in other tissue than planned."
-                 : "The needle held the tissue displaced when the seed was dropped; the tissue has gone back since "
-                   "and has taken the seed along.";
-    case SeedCause::relaxation:
-      return temporary
-                 ? "The tissue had crept under the catheters when the images of the plan were taken."
-                 : "The tissue had crept under the needle when the seed was dropped; it has gone back since and has "
-                   "taken the seed along.";
-    case SeedCause::wait:
-      return "Tissue and catheter moved against each other between the images of the plan and the delivery.";
-    case SeedCause::strand:
-      return "The strand holds the seed at its distance from the other seeds of the needle.";
-    case SeedCause::release:
-      return "The seed jumped along its track when it was let go.";
-    case SeedCause::aim:
-      return "The needle was aimed beside the plan on purpose, to make up for the other causes.";
-    case SeedCause::probe:
-      return "The probe held the gland displaced when the seed was dropped, and the contours of the plan were drawn "
-             "without it; with the probe out the tissue goes back and takes the seed along.";
-  }
-  return "";
-}
-
 std::vector<CauseOfErrors> causes_that_moved(const ImplantHistory& history) {
   constexpr double kNothing_mm = 5e-4;
   std::vector<CauseOfErrors> causes = causes_of_errors(history.seeds);

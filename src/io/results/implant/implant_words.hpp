@@ -36,9 +36,6 @@ std::string signed_number(double value, int digits);
 /// A signed length with its direction instead of a sign: "1.2 mm to inferior". @param axis 0 … 2
 std::string toward_text(double value_mm, std::size_t axis);
 
-/// A sentence that explains a cause of errors in a permanent or a temporary implant.
-const char* meaning_of(SeedCause cause, Implant implant);
-
 /// The causes that moved a seed.
 std::vector<CauseOfErrors> causes_that_moved(const ImplantHistory& history);
 

@@ -1,16 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "implant/json_parts.hpp"
 
-#include <cmath>
-
 namespace stylet::results {
-
-OrderedJson list_of(const Vec3& v) {
-  OrderedJson list = OrderedJson::array();
-  for (int axis = 0; axis < 3; ++axis)
-    list.push_back(std::isfinite(v[axis]) ? OrderedJson(v[axis]) : OrderedJson(nullptr));
-  return list;
-}
 
 OrderedJson errors_json(const SeedErrors& errors) {
   OrderedJson json{{"seeds", errors.seeds},

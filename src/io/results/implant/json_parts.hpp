@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "record/json.hpp"
 #include "stylet/implant/seed_errors.hpp"
 
 #include <nlohmann/json.hpp>
@@ -9,9 +10,7 @@
 namespace stylet::results {
 
 using OrderedJson = nlohmann::ordered_json;
-
-/// Three numbers; null for those that are not finite.
-OrderedJson list_of(const Vec3& v);
+using record::list_of;
 
 /// Number of seeds, distances, and signed errors along the axes.
 OrderedJson errors_json(const SeedErrors& errors);

@@ -3,368 +3,295 @@
 
 #include "h5_mesh.hpp"
 #include "model/digest.hpp"
-#include "run_file_format.hpp"
-#include "stored_run.hpp"
+#include "record/attributes.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstddef>
 
 namespace stylet::results {
 namespace {
-
-std::array<double, 3> numbers_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-Vec3 vector_from(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
-
-/// Names of the columns with the parts of a seed's error, in the order of SeedCause.
-constexpr std::array<const char*, kAllCauses> kCauseColumns{"bend_mm",    "motion_mm", "relaxation_mm", "strand_mm",
-                                                            "release_mm", "aim_mm",    "probe_mm",      "wait_mm"};
-
-std::string member_name(std::size_t number) { return fmt::format("{:03}", number); }
-
-void write_vector(hid_t object, const char* name, const Vec3& v) {
-  h5::write_attribute(object, name, std::span<const double>(v.data(), 3));
-}
-void write_number(hid_t object, const char* name, double value) {
-  h5::write_attribute(object, name, std::span<const double>(&value, 1));
-}
-
-/// @param values rows of `width` numbers
-template <class Value>
-void write_matrix(hid_t parent, const char* name, hid_t type, const std::vector<Value>& values, hsize_t width) {
-  const std::array<hsize_t, 2> shape{values.size() * sizeof(Value) / (H5Tget_size(type) * width), width};
-  h5::write_array(parent, name, type, shape, values.data());
-}
-template <class Row>
-void write_rows_of(hid_t parent, const char* name, hid_t type, const std::vector<Row>& rows) {
-  const hsize_t count = rows.size();
-  h5::write_array(parent, name, type, {&count, 1}, rows.data());
-}
-
-void write_needle(hid_t parent, std::size_t number, const NeedleHistory& needle) {
-  const h5::Handle group = h5::group(parent, member_name(number).c_str());
-  h5::write_attribute(group, "name", needle.name);
-  h5::write_attribute(group, "together", std::array{static_cast<int>(needle.record.group)});
-  write_vector(group, "entry_mm", needle.entry_mm);
-  write_vector(group, "direction", needle.direction);
-  write_number(group, "depth_mm", needle.depth_mm);
-  write_number(group, "peak_force_N", needle.peak_force_N);
-  write_number(group, "deflection_mm", needle.deflection_mm);
-  write_vector(group, "gland_shift_mm", needle.gland_shift_mm);
-  write_number(group, "seconds", needle.seconds);
-  h5::write_attribute(group, "step_count", std::array{static_cast<int>(needle.steps)});
-  std::vector<StepRow> steps;
-  for (const Step& step : needle.record.steps) steps.push_back(to_row(step));
-  write_rows_of(group, "steps", step_row_type(), steps);
-  std::vector<EventRow> events;
-  for (const Event& event : needle.events) events.push_back(to_row(event));
-  write_rows_of(group, "events", event_row_type(), events);
-  std::vector<ShapeRow> shapes;
-  std::vector<Vec3> points;
-  for (const NeedleShape& shape : needle.record.shapes) {
-    ShapeRow& row = shapes.emplace_back();
-    row.time_s = shape.time_s;
-    row.base_depth_mm = shape.base_depth_mm;
-    put_text(row.when, shape.when);
-    points.insert(points.end(), shape.points_mm.begin(), shape.points_mm.end());
-  }
-  write_rows_of(group, "shapes", shape_row_type(), shapes);
-  const std::array<hsize_t, 3> shape{shapes.size(), kNeedleShapePoints, 3};
-  h5::write_array(group, "shapes_mm", H5T_NATIVE_DOUBLE, shape, points.data());
-}
-
-void write_structure(hid_t parent, std::size_t number, const RecordedStructure& structure) {
-  const h5::Handle group = h5::group(parent, member_name(number).c_str());
-  h5::write_attribute(group, "name", structure.name);
-  h5::write_attribute(group, "region", structure.region);
-  h5::write_attribute(group, "type", structure.type);
-  h5::write_attribute(group, "colour", std::span<const int>(structure.colour));
-  write_number(group, "volume_cc", structure.volume_cc);
-  std::vector<Vec3> points;
-  std::vector<std::int64_t> counts;
-  for (const Contour& contour : structure.contours) {
-    points.insert(points.end(), contour.points.begin(), contour.points.end());
-    counts.push_back(static_cast<std::int64_t>(contour.points.size()));
-  }
-  write_matrix(group, "contour_points_mm", H5T_NATIVE_DOUBLE, points, 3);
-  write_rows_of(group, "contour_sizes", H5T_NATIVE_INT64, counts);
-  write_matrix(group, "cloud_mm", H5T_NATIVE_DOUBLE, structure.cloud_mm, 3);
-}
-
-void write_dose(hid_t file, const char* name, const RecordedDose& dose) {
-  const h5::Handle group = h5::group(file, name);
-  write_vector(group, "origin_mm", dose.grid.origin_mm);
-  write_vector(group, "spacing_mm", dose.grid.spacing_mm);
-  const auto& size = dose.grid.size;
-  const std::array<hsize_t, 3> shape{static_cast<hsize_t>(size[2]), static_cast<hsize_t>(size[1]),
-                                     static_cast<hsize_t>(size[0])};
-  h5::write_array(group, "dose_Gy", H5T_NATIVE_FLOAT, shape, dose.grid.dose_Gy.data());
-  write_rows_of(group, "dvh_dose_Gy", H5T_NATIVE_DOUBLE, dose.dose_Gy);
-  std::vector<double> percent;
-  for (const std::vector<double>& curve : dose.percent) percent.insert(percent.end(), curve.begin(), curve.end());
-  const std::array<hsize_t, 2> curves{dose.percent.size(), dose.dose_Gy.size()};
-  h5::write_array(group, "dvh_percent", H5T_NATIVE_DOUBLE, curves, percent.data());
-}
-
-void write_all_of(hid_t file, ImplantRecord& record) {
-  h5::write_attribute(file, "format", std::string(kImplantFileFormat));
-  h5::write_attribute(file, "format_version", std::array{kImplantFileVersion});
-  h5::write_attribute(file, "content_sha256", content_digest(record));
-  h5::write_attribute(file, "version", record.version);
-  h5::write_attribute(file, "scenario_name", record.scenario_name);
-  h5::write_attribute(file, "source", record.source);
-  h5::write_attribute(file, "units", std::string("mm, N, s, Gy"));
-  h5::write_attribute(file, "frame", std::string("LPS"));
-  write_number(file, "prescription_Gy", record.prescription_Gy);
-  write_number(file, "needle_diameter_mm", record.needle_diameter_mm);
-  write_number(file, "needle_length_mm", record.needle_length_mm);
-  write_number(file, "seed_length_mm", record.seed_length_mm);
-  h5::write_text(file, "scenario", record.scenario_text);
-  h5::write_texts(file, "warnings", record.warnings);
-  write_rows_of(file, "summary_json", H5T_NATIVE_UINT8,
-                std::vector<char>(record.summary.begin(), record.summary.end()));
-  h5::write_mesh(file, record.mesh);
-  const h5::Handle needles = h5::group(file, "needles"), stabilising = h5::group(file, "stabilising"),
-                   structures = h5::group(file, "structures");
-  for (std::size_t k = 0; k < record.needles.size(); ++k) write_needle(needles, k, record.needles[k]);
-  for (std::size_t k = 0; k < record.stabilising.size(); ++k) write_needle(stabilising, k, record.stabilising[k]);
-  std::vector<SeedRow> seeds;
-  for (const SeedHistory& seed : record.seeds) seeds.push_back(to_row(seed));
-  write_rows_of(file, "seeds", seed_row_type(), seeds);
-  for (std::size_t k = 0; k < record.structures.size(); ++k) write_structure(structures, k, record.structures[k]);
-  write_dose(file, "planned", record.planned);
-  write_dose(file, "delivered", record.delivered);
-}
 
 void demand_shape(bool fits, const std::string& what) {
   if (!fits) throw h5::Failure(what + " has the wrong shape");
 }
 
-template <class Row>
-std::vector<Row> rows_in(hid_t parent, const char* name, hid_t type) {
-  const h5::Handle set = h5::dataset(parent, name);
-  const auto shape = h5::extents(set);
-  demand_shape(shape.size() == 1, name);
-  std::vector<Row> rows(shape[0]);
-  h5::read_rows(set, type, 0, rows.size(), rows.data());
-  return rows;
-}
-
-std::vector<Vec3> points_in(hid_t parent, const char* name) {
-  const h5::Handle set = h5::dataset(parent, name);
-  const auto shape = h5::extents(set);
-  demand_shape(shape.size() >= 2 && shape.back() == 3, name);
-  std::size_t count = 1;
-  for (std::size_t k = 0; k + 1 < shape.size(); ++k) count *= shape[k];
-  std::vector<Vec3> points(count);
-  h5::read_rows(set, H5T_NATIVE_DOUBLE, 0, shape[0], points.data());
-  return points;
-}
-
-Vec3 vector_attribute(hid_t object, const char* name) {
-  const std::vector<double> values = h5::read_double_attribute(object, name);
-  demand_shape(values.size() == 3, name);
-  return Vec3(values.data());
-}
-double number_attribute(hid_t object, const char* name) {
-  const std::vector<double> values = h5::read_double_attribute(object, name);
-  demand_shape(values.size() == 1, name);
-  return values[0];
-}
-int integer_attribute(hid_t object, const char* name) {
-  const std::vector<int> values = h5::read_int_attribute(object, name);
-  demand_shape(values.size() == 1, name);
-  return values[0];
-}
-
-NeedleHistory needle_in(hid_t parent, std::size_t number) {
-  const h5::Handle group = h5::open_group(parent, member_name(number).c_str());
-  NeedleHistory needle;
-  needle.name = h5::read_text_attribute(group, "name");
-  needle.record.group = static_cast<std::size_t>(std::max(0, integer_attribute(group, "together")));
-  needle.entry_mm = vector_attribute(group, "entry_mm");
-  needle.direction = vector_attribute(group, "direction");
-  needle.depth_mm = number_attribute(group, "depth_mm");
-  needle.peak_force_N = number_attribute(group, "peak_force_N");
-  needle.deflection_mm = number_attribute(group, "deflection_mm");
-  needle.gland_shift_mm = vector_attribute(group, "gland_shift_mm");
-  needle.seconds = number_attribute(group, "seconds");
-  needle.steps = integer_attribute(group, "step_count");
-  for (const StepRow& row : rows_in<StepRow>(group, "steps", step_row_type())) {
-    demand_shape(row.tip_state >= 0 && row.tip_state <= static_cast<std::int8_t>(TipState::exited), "tip_state");
-    needle.record.steps.push_back(from_row(row));
+/// The digest of the values of a file in their order, each with its name.
+class Seal {
+ public:
+  template <class T>
+  void add(const std::string& name, T& value) {
+    detail::WireWriter wire;
+    wire(value);
+    digest_.add(name);
+    digest_.add(wire.bytes);
   }
-  for (const EventRow& row : rows_in<EventRow>(group, "events", event_row_type())) {
-    demand_shape(row.kind >= 0 && row.kind <= static_cast<std::int8_t>(EventKind::grazed), "kind of an event");
-    needle.events.push_back(from_row(row));
+  template <class T>
+  void add_rows(const std::string& name, const record::Rows<T>& rows) {
+    std::string values;
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      rows.each_value(
+          k, [&](std::span<const char> value, const record::Column&) { values.append(value.begin(), value.end()); });
+    add(name, values);
   }
-  const std::vector<Vec3> points = points_in(group, "shapes_mm");
-  const auto rows = rows_in<ShapeRow>(group, "shapes", shape_row_type());
-  demand_shape(points.size() == rows.size() * kNeedleShapePoints, "shapes_mm");
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    const auto first = points.begin() + static_cast<std::ptrdiff_t>(k * kNeedleShapePoints);
-    needle.record.shapes.push_back(
-        {get_text(rows[k].when), rows[k].time_s, rows[k].base_depth_mm, {first, first + kNeedleShapePoints}});
-  }
-  return needle;
+  [[nodiscard]] std::string finish() { return digest_.finish(); }
+
+ private:
+  detail::Digest digest_;
+};
+
+hsize_t product(const std::vector<hsize_t>& counts) {
+  hsize_t all = 1;
+  for (const hsize_t count : counts) all *= count;
+  return all;
 }
 
-RecordedStructure structure_in(hid_t parent, std::size_t number) {
-  const h5::Handle group = h5::open_group(parent, member_name(number).c_str());
-  RecordedStructure structure;
-  structure.name = h5::read_text_attribute(group, "name");
-  structure.region = h5::read_text_attribute(group, "region");
-  structure.type = h5::read_text_attribute(group, "type");
-  const std::vector<int> colour = h5::read_int_attribute(group, "colour");
-  demand_shape(colour.size() == 3, "colour");
-  std::copy(colour.begin(), colour.end(), structure.colour.begin());
-  structure.volume_cc = number_attribute(group, "volume_cc");
-  const std::vector<Vec3> points = points_in(group, "contour_points_mm");
-  std::size_t first = 0;
-  for (const std::int64_t count : rows_in<std::int64_t>(group, "contour_sizes", H5T_NATIVE_INT64)) {
-    demand_shape(count >= 0 && static_cast<std::size_t>(count) <= points.size() - first, "contour_sizes");
-    const auto begin = points.begin() + static_cast<std::ptrdiff_t>(first);
-    structure.contours.push_back({.points = {begin, begin + static_cast<std::ptrdiff_t>(count)}});
-    first += static_cast<std::size_t>(count);
+/// Type of the numbers in a list of numbers, points or characters.
+template <class Values>
+hid_t number_type_of() {
+  using V = typename Values::value_type;
+  if constexpr (std::same_as<V, Vec3>)
+    return H5T_NATIVE_DOUBLE;
+  else
+    return h5::number_type(V{});
+}
+
+/// Writes the parts of a file, or reads them into the same values: one list of the contents serves for both. The
+/// functions throw h5::Failure.
+class ImplantFile {
+ public:
+  ImplantFile(hid_t at, Seal& seal, bool writes) : at_(at), seal_(seal), writes_(writes) {}
+
+  template <class T>
+  void attributes(T& record) {
+    record::each_field<record::kFile>(record, [&](const record::Field& field, auto& value) {
+      if (!writes_ && record::lacks(at_, field)) return;
+      const std::string name = record::name_of(field);
+      writes_ ? record::write_attribute(at_, name, value) : record::read_attribute(at_, name, value);
+      seal_.add(name, value);
+    });
   }
-  structure.cloud_mm = points_in(group, "cloud_mm");
-  return structure;
+  template <class T>
+  void rows(const char* name, std::vector<T>& records) {
+    const auto rows = writes_ ? record::rows_of(std::span<const T>(records)) : record::read_rows<T>(at_, name);
+    if (writes_) record::write_rows(at_, name, rows);
+    records.resize(rows.size());
+    for (std::size_t k = 0; k < rows.size() && !writes_; ++k)
+      if (!rows.get(k, records[k])) throw h5::Failure(std::string(name) + " has a number that means nothing");
+    seal_.add_rows(name, rows);
+  }
+  /// @param inner extents of the axes but the first; those that are 0 are set when reading
+  template <class Values>
+  void array(const char* name, Values& values, std::vector<hsize_t>&& inner = {}) {
+    array(name, values, inner);
+  }
+  template <class Values>
+  void array(const char* name, Values& values, std::vector<hsize_t>& inner) {
+    const hid_t type = number_type_of<Values>();
+    constexpr std::size_t item = sizeof(typename Values::value_type);
+    if (writes_) {
+      std::vector<hsize_t> shape{0};
+      shape.insert(shape.end(), inner.begin(), inner.end());
+      if (const hsize_t row = product(inner) * H5Tget_size(type); row > 0) shape[0] = values.size() * item / row;
+      h5::write_array(at_, name, type, shape, values.data());
+    } else {
+      const h5::Handle set = h5::dataset(at_, name);
+      const std::vector<hsize_t> shape = h5::extents(set);
+      demand_shape(shape.size() == inner.size() + 1, name);
+      for (std::size_t k = 0; k < inner.size(); ++k) {
+        if (inner[k] == 0) inner[k] = shape[k + 1];
+        demand_shape(inner[k] == shape[k + 1], name);
+      }
+      values.resize(product(shape) * H5Tget_size(type) / item);
+      if (!values.empty()) h5::read_rows(set, type, 0, shape[0], values.data());
+    }
+    seal_.add(name, values);
+  }
+  void text(const char* name, std::string& text) {
+    writes_ ? h5::write_text(at_, name, text) : void(text = h5::read_text(at_, name));
+    seal_.add(name, text);
+  }
+  void texts(const char* name, std::vector<std::string>& texts) {
+    writes_ ? h5::write_texts(at_, name, texts) : void(texts = h5::read_texts(at_, name));
+    seal_.add(name, texts);
+  }
+  void mesh(TetMesh& mesh) {
+    writes_ ? h5::write_mesh(at_, mesh) : void(mesh = h5::read_mesh(at_));
+    seal_.add("mesh", mesh);
+  }
+  /// A group with the contents of an item.
+  template <class Item>
+  void group(const std::string& name, Item& item);
+  /// A group with a group for each item.
+  template <class Item>
+  void members(const char* name, std::vector<Item>& items) {
+    const h5::Handle group = open(name);
+    if (!writes_) {
+      H5G_info_t info{};
+      h5::check(H5Gget_info(group, &info), name);
+      items.resize(info.nlinks);
+    }
+    ImplantFile inside(group, seal_, writes_);
+    for (std::size_t k = 0; k < items.size(); ++k) inside.group(fmt::format("{:03}", k), items[k]);
+  }
+
+ private:
+  [[nodiscard]] h5::Handle open(const std::string& name) const {
+    return writes_ ? h5::group(at_, name.c_str()) : h5::open_group(at_, name.c_str());
+  }
+  hid_t at_;
+  Seal& seal_;
+  bool writes_;
+};
+
+// Lists of lists are one array in the file: they are joined, written or read, and taken apart again.
+
+void contents(ImplantFile& file, NeedleHistory& needle) {
+  file.attributes(needle);
+  file.rows("steps", needle.record.steps);
+  file.rows("events", needle.events);
+  std::vector<Vec3> all;
+  for (const NeedleShape& shape : needle.record.shapes)
+    all.insert(all.end(), shape.points_mm.begin(), shape.points_mm.end());
+  file.rows("shapes", needle.record.shapes);
+  file.array("shapes_mm", all, {kNeedleShapePoints, 3});
+  demand_shape(all.size() == needle.record.shapes.size() * kNeedleShapePoints, "shapes_mm");
+  for (auto from = all.begin(); NeedleShape & shape : needle.record.shapes) {
+    shape.points_mm.assign(from, from + kNeedleShapePoints);
+    from += kNeedleShapePoints;
+  }
 }
 
-RecordedDose dose_in(hid_t file, const char* name) {
-  const h5::Handle group = h5::open_group(file, name);
-  RecordedDose dose;
-  dose.grid.origin_mm = vector_attribute(group, "origin_mm");
-  dose.grid.spacing_mm = vector_attribute(group, "spacing_mm");
-  const h5::Handle set = h5::dataset(group, "dose_Gy");
-  const auto shape = h5::extents(set);
-  demand_shape(shape.size() == 3, "dose_Gy");
-  for (std::size_t k = 0; k < 3; ++k) dose.grid.size[k] = static_cast<Index>(shape[2 - k]);
-  dose.grid.dose_Gy.resize(shape[0] * shape[1] * shape[2]);
-  h5::read_rows(set, H5T_NATIVE_FLOAT, 0, shape[0], dose.grid.dose_Gy.data());
-  dose.dose_Gy = rows_in<double>(group, "dvh_dose_Gy", H5T_NATIVE_DOUBLE);
-  const h5::Handle percent = h5::dataset(group, "dvh_percent");
-  const auto curves = h5::extents(percent);
-  demand_shape(curves.size() == 2 && curves[1] == dose.dose_Gy.size(), "dvh_percent");
-  for (hsize_t s = 0; s < curves[0]; ++s)
-    h5::read_rows(percent, H5T_NATIVE_DOUBLE, s, 1, dose.percent.emplace_back(curves[1]).data());
-  return dose;
+void contents(ImplantFile& file, RecordedStructure& structure) {
+  file.attributes(structure);
+  std::vector<Vec3> all;
+  std::vector<std::int64_t> counts;
+  for (const Contour& contour : structure.contours) {
+    all.insert(all.end(), contour.points.begin(), contour.points.end());
+    counts.push_back(static_cast<std::int64_t>(contour.points.size()));
+  }
+  file.array("contour_points_mm", all, {3});
+  file.array("contour_sizes", counts);
+  structure.contours.resize(counts.size());
+  auto from = all.begin();
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    demand_shape(counts[k] >= 0 && counts[k] <= all.end() - from, "contour_sizes");
+    structure.contours[k].points.assign(from, from + counts[k]);
+    from += counts[k];
+  }
+  file.array("cloud_mm", structure.cloud_mm, {3});
 }
 
-template <class Item, class Read>
-std::vector<Item> members_of(hid_t file, const char* name, const Read& read) {
-  const h5::Handle group = h5::open_group(file, name);
-  H5G_info_t info{};
-  h5::check(H5Gget_info(group, &info), name);
-  std::vector<Item> items;
-  for (std::size_t k = 0; k < info.nlinks; ++k) items.push_back(read(group, k));
-  return items;
+void contents(ImplantFile& file, RecordedDose& dose) {
+  file.attributes(dose);
+  auto& size = dose.grid.size;
+  std::vector<hsize_t> plane{static_cast<hsize_t>(size[1]), static_cast<hsize_t>(size[0])};
+  file.array("dose_Gy", dose.grid.dose_Gy, plane);
+  const hsize_t layer = product(plane);
+  size = {static_cast<Index>(plane[1]), static_cast<Index>(plane[0]),
+          static_cast<Index>(layer > 0 ? dose.grid.dose_Gy.size() / layer : 0)};
+  file.array("dvh_dose_Gy", dose.dose_Gy);
+  std::vector<double> all;
+  for (const std::vector<double>& curve : dose.percent) all.insert(all.end(), curve.begin(), curve.end());
+  std::vector<hsize_t> inner{dose.dose_Gy.size()};
+  file.array("dvh_percent", all, inner);
+  demand_shape(inner[0] == dose.dose_Gy.size(), "dvh_percent");
+  if (inner[0] == 0) return;
+  const auto length = static_cast<std::ptrdiff_t>(inner[0]);
+  dose.percent.resize(all.size() / inner[0]);
+  for (auto from = all.begin(); std::vector<double> & curve : dose.percent) {
+    curve.assign(from, from + length);
+    from += length;
+  }
+}
+
+void contents(ImplantFile& file, ImplantRecord& record) {
+  file.attributes(record);
+  file.text("scenario", record.scenario_text);
+  file.texts("warnings", record.warnings);
+  file.array("summary_json", record.summary);
+  file.mesh(record.mesh);
+  file.members("needles", record.needles);
+  file.members("stabilising", record.stabilising);
+  file.rows("seeds", record.seeds);
+  file.members("structures", record.structures);
+  file.group("planned", record.planned);
+  file.group("delivered", record.delivered);
+}
+
+template <class Item>
+void ImplantFile::group(const std::string& name, Item& item) {
+  const h5::Handle group = open(name);
+  ImplantFile inside(group, seal_, writes_);
+  contents(inside, item);
+}
+
+/// The digest of a file of version 2, in its own order. Enumerations were numbers of four bytes.
+std::string digest_of_version_2(ImplantRecord& r) {
+  detail::WireWriter wire;
+  const auto count = [&](std::size_t number) { wire(number); };
+  const auto needles = [&](std::vector<NeedleHistory>& all) {
+    count(all.size());
+    for (NeedleHistory& n : all) {
+      wire(n.name, n.entry_mm, n.direction, n.depth_mm, n.peak_force_N, n.deflection_mm, n.gland_shift_mm, n.events,
+           n.steps, n.seconds, n.record.group);
+      count(n.record.steps.size());
+      for (Step& s : n.record.steps) {
+        auto& q = s.base.rotation.coeffs();
+        wire(s.time_s, s.dt_s, s.base_depth_mm, s.base.origin, q.x(), q.y(), q.z(), q.w(), s.force_axial_N,
+             s.force_sagittal_N, s.force_lateral_N, s.torque_Nmm, s.tip_mm, s.tip_state, s.contacts, s.sticking,
+             s.iterations, s.step_us, s.rest_steps, s.flags);
+      }
+      wire(n.record.shapes);
+    }
+  };
+  wire(r.version, r.scenario_name, r.scenario_text, r.source, r.prescription_Gy, r.needle_diameter_mm,
+       r.needle_length_mm, r.seed_length_mm, r.mesh);
+  needles(r.needles);
+  needles(r.stabilising);
+  count(r.seeds.size());
+  for (SeedHistory& s : r.seeds) {
+    wire(s.number, s.needle, s.planned_mm, s.dropped_mm, s.rest_mm, s.axis, s.dropped_s, s.lost, s.in_tissue);
+    for (const SeedCauseWords& words : kSeedCauses)
+      if (words.since <= 2) wire(s.by(words.cause));
+  }
+  wire(r.structures, r.planned, r.delivered, r.warnings, r.summary);
+  detail::Digest digest;
+  digest.add(wire.bytes);
+  return digest.finish();
 }
 
 ImplantRecord whole_implant_in(hid_t file) {
   if (!h5::has_attribute(file, "format") || h5::read_text_attribute(file, "format") != kImplantFileFormat)
     throw h5::Failure("an HDF5 file, but not that of an implant");
-  if (integer_attribute(file, "format_version") > kImplantFileVersion)
-    throw h5::Failure("written by a newer version of stylet");
-  if (integer_attribute(file, "format_version") < kImplantFileVersion)
-    throw h5::Failure("written by an older version of stylet, whose seeds have fewer causes");
-  ImplantRecord r;
-  r.version = h5::read_text_attribute(file, "version");
-  r.scenario_name = h5::read_text_attribute(file, "scenario_name");
-  r.scenario_text = h5::read_text(file, "scenario");
-  r.source = h5::read_text_attribute(file, "source");
-  r.prescription_Gy = number_attribute(file, "prescription_Gy");
-  r.needle_diameter_mm = number_attribute(file, "needle_diameter_mm");
-  r.needle_length_mm = number_attribute(file, "needle_length_mm");
-  r.seed_length_mm = number_attribute(file, "seed_length_mm");
-  r.mesh = h5::read_mesh(file);
-  r.needles = members_of<NeedleHistory>(file, "needles", needle_in);
-  r.stabilising = members_of<NeedleHistory>(file, "stabilising", needle_in);
-  for (const SeedRow& row : rows_in<SeedRow>(file, "seeds", seed_row_type())) {
-    demand_shape(row.number >= 1 && row.needle >= 0 && static_cast<std::size_t>(row.needle) < r.needles.size(),
-                 "/seeds: needle");
-    r.seeds.push_back(from_row(row));
-  }
-  r.structures = members_of<RecordedStructure>(file, "structures", structure_in);
-  r.planned = dose_in(file, "planned");
-  r.delivered = dose_in(file, "delivered");
-  r.warnings = h5::read_texts(file, "warnings");
-  const auto summary = rows_in<char>(file, "summary_json", H5T_NATIVE_UINT8);
-  r.summary.assign(summary.begin(), summary.end());
-  if (h5::read_text_attribute(file, "content_sha256") != content_digest(r))
+  int version = 0;
+  record::read_attribute(file, "format_version", version);
+  if (version > implant_file_version()) throw h5::Failure("written by a newer version of stylet");
+  if (version < 2) throw h5::Failure("written by an older version of stylet, whose seeds have fewer causes");
+  Seal seal;
+  ImplantRecord record;
+  ImplantFile reader(file, seal, false);
+  contents(reader, record);
+  for (const SeedHistory& seed : record.seeds) demand_shape(seed.needle < record.needles.size(), "/seeds: needle");
+  if (h5::read_text_attribute(file, "content_sha256") != (version == 2 ? digest_of_version_2(record) : seal.finish()))
     throw h5::Failure("damaged: its content has changed since it was written");
-  return r;
+  if (version == 2 && record.summary.find("\"dwell_positions\":") != std::string::npos)
+    record.implant = Implant::temporary;
+  return record;
 }
 
 }  // namespace
 
-h5::Handle seed_row_type() {
-  h5::Handle type = h5::compound_type(sizeof(SeedRow));
-  const h5::Handle vector = h5::array_type(H5T_NATIVE_DOUBLE, 3), yes_or_no = h5::bool_type();
-  h5::insert_member(type, "number", offsetof(SeedRow, number), H5T_NATIVE_INT32);
-  h5::insert_member(type, "needle", offsetof(SeedRow, needle), H5T_NATIVE_INT32);
-  h5::insert_member(type, "lost", offsetof(SeedRow, lost), yes_or_no);
-  h5::insert_member(type, "in_tissue", offsetof(SeedRow, in_tissue), yes_or_no);
-  h5::insert_member(type, "dropped_s", offsetof(SeedRow, dropped_s), H5T_NATIVE_DOUBLE);
-  h5::insert_member(type, "planned_mm", offsetof(SeedRow, planned_mm), vector);
-  h5::insert_member(type, "dropped_mm", offsetof(SeedRow, dropped_mm), vector);
-  h5::insert_member(type, "rest_mm", offsetof(SeedRow, rest_mm), vector);
-  h5::insert_member(type, "axis", offsetof(SeedRow, axis), vector);
-  for (std::size_t k = 0; k < kAllCauses; ++k)
-    h5::insert_member(type, kCauseColumns[k], offsetof(SeedRow, cause_mm) + k * 3 * sizeof(double), vector);
-  return type;
-}
-
-SeedRow to_row(const SeedHistory& seed) {
-  SeedRow row;
-  row.number = static_cast<std::int32_t>(seed.number + 1);
-  row.needle = static_cast<std::int32_t>(seed.needle);
-  row.lost = seed.lost ? 1 : 0;
-  row.in_tissue = seed.in_tissue ? 1 : 0;
-  row.dropped_s = seed.dropped_s;
-  row.planned_mm = numbers_of(seed.planned_mm);
-  row.dropped_mm = numbers_of(seed.dropped_mm);
-  row.rest_mm = numbers_of(seed.rest_mm);
-  row.axis = numbers_of(seed.axis);
-  for (std::size_t k = 0; k < kAllCauses; ++k) row.cause_mm[k] = numbers_of(seed.cause_mm[k]);
-  return row;
-}
-
-SeedHistory from_row(const SeedRow& row) {
-  SeedHistory seed;
-  seed.number = static_cast<std::size_t>(row.number - 1);
-  seed.needle = static_cast<std::size_t>(row.needle);
-  seed.lost = row.lost != 0;
-  seed.in_tissue = row.in_tissue != 0;
-  seed.dropped_s = row.dropped_s;
-  seed.planned_mm = vector_from(row.planned_mm);
-  seed.dropped_mm = vector_from(row.dropped_mm);
-  seed.rest_mm = vector_from(row.rest_mm);
-  seed.axis = vector_from(row.axis);
-  for (std::size_t k = 0; k < kAllCauses; ++k) seed.cause_mm[k] = vector_from(row.cause_mm[k]);
-  return seed;
-}
-
-h5::Handle shape_row_type() {
-  h5::Handle type = h5::compound_type(sizeof(ShapeRow));
-  h5::insert_member(type, "time_s", offsetof(ShapeRow, time_s), H5T_NATIVE_DOUBLE);
-  h5::insert_member(type, "base_depth_mm", offsetof(ShapeRow, base_depth_mm), H5T_NATIVE_DOUBLE);
-  h5::insert_member(type, "when", offsetof(ShapeRow, when), h5::string_type(sizeof(ShapeRow::when)));
-  return type;
-}
-
-std::string content_digest(ImplantRecord& record) {
-  detail::WireWriter wire;
-  wire(record);
-  detail::Digest digest;
-  digest.add_bytes(wire.bytes.data(), wire.bytes.size());
-  return digest.finish();
-}
-
-void write_stored_implant(const char* path, ImplantRecord& record) {
+void write_stored_implant(const char* path, ImplantRecord record) {
   h5::Handle file = h5::create_file(path);
-  write_all_of(file, record);
+  h5::write_attribute(file, "format", std::string(kImplantFileFormat));
+  h5::write_attribute(file, "format_version", std::array{implant_file_version()});
+  h5::write_attribute(file, "units", std::string("mm, N, s, Gy"));
+  h5::write_attribute(file, "frame", std::string("LPS"));
+  Seal seal;
+  ImplantFile writer(file, seal, true);
+  contents(writer, record);
+  h5::write_attribute(file, "content_sha256", seal.finish());
   if (!file.reset()) h5::fail("close");
 }
 

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "record/implant_columns.hpp"
+#include "stylet/io/implant_results.hpp"
+
+#include <string>
+
+/// Seeds as seeds.csv, found.csv and summary.json show them.
+namespace stylet::results {
+
+ShownSeed shown_seed(const SeedHistory& seed, const ImplantOutcome& outcome);
+
+/// @param matched the seed that was found for it; null: none was
+ShownFound shown_found(const SeedHistory& seed, const MatchedSeed* matched, const ImplantHistory& history,
+                       const FoundComparison& comparison);
+
+/// A length [mm] as the tables of seeds have it, whatever digits a field says.
+std::string four_decimals(double value, int decimals);
+
+}  // namespace stylet::results
