@@ -14,9 +14,14 @@ export const CURVES = [
 ] as const;
 export type CurveKey = (typeof CURVES)[number]['key'];
 
-/** Text size of the page [CSS px]. Plots use it, so that they grow with the screen. */
+/** Text size of the page [CSS px]. */
+export function rem(): number {
+  return parseFloat(getComputedStyle(document.documentElement).fontSize);
+}
+
+/** Text size of plots [CSS px], which grow with the screen. */
 export function fontSize(): number {
-  return parseFloat(getComputedStyle(document.documentElement).fontSize) * 0.82;
+  return rem() * 0.82;
 }
 
 /** Scale of lines and dots, in proportion to the text size: 1 on a usual screen. */

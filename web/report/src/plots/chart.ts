@@ -5,7 +5,7 @@ import uPlot from 'uplot';
 import { element } from '../../../shared/dom';
 import { drawEvents, labelsHeight, textWidth, type PlacedEvent } from '../../../shared/event_labels';
 import { numberText } from '../../../shared/numbers';
-import { axis, canvasFont, fontSize, lineScale, SOFT } from '../../../shared/plot_style';
+import { axis, canvasFont, fontSize, lineScale, rem, SOFT } from '../../../shared/plot_style';
 import { drawToFit } from '../paper';
 import { addLegend, drawSeries, type Series, type Switches } from './series';
 import { logTicks } from './ticks';
@@ -96,6 +96,7 @@ export class Chart {
     box.style.height = '';
     const width = box.clientWidth;
     if (width === 0) return;
+    box.style.setProperty('--drawn-width', `${width / rem()}rem`);  // on paper the chart is not stretched
     const size = fontSize();
     const widest = options.names ? Math.max(...options.names.map(textWidth)) + 14 : 0;
     const namesFit = widest <= MOST_FOR_NAMES * width;
