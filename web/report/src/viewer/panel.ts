@@ -5,8 +5,7 @@ import type { Moment } from '../moment';
 import { button, element } from '../../../shared/dom';
 import { colorBar, contactKey, scaleMarks } from '../../../shared/keys';
 import { regionRow } from '../../../shared/region_look';
-import { VIEWS } from '../../../shared/views';
-import { stillForPaper } from '../paper';
+import { openStage } from '../stage_box';
 import { Stage } from './stage';
 
 function regionList(stage: Stage): HTMLElement {
@@ -113,30 +112,16 @@ function timeControls(moment: Moment): HTMLElement {
 }
 
 export function buildViewer(data: ReportData, moment: Moment, root: HTMLElement): void {
-  const picture = element('div', 'picture');
-  const canvas = element('div', 'canvas');
-  const bar = element('div', 'scale-bar');
+  const opened = openStage(root, (box, scaleBar) => new Stage(data, box, scaleBar),
+    'the interactive view needs. The pictures below show the same scene before, during and after the insertion.');
+  if (!opened) return;
+  const { stage, picture, views } = opened;
   const note = element('div', 'exaggeration');
   note.hidden = true;
-  picture.append(canvas, bar, note);
-  root.append(picture);
-  let stage: Stage;
-  try {
-    stage = new Stage(data, canvas, (mm, px) => {
-      bar.textContent = `${mm} mm`;
-      bar.style.width = `${(100 * px) / picture.clientWidth}%`;
-    });
-  } catch {
-    root.replaceChildren(element('p', 'note',
-      'This browser offers no WebGL, which the interactive view needs. The pictures below show the same scene before, during and after the insertion.'));
-    return;
-  }
-  stillForPaper(picture, () => stage.still());
+  picture.append(note);
   const marks = scaleMarks(data.displacementMax);
   const most = marks[marks.length - 1];
   const side = element('div', 'side');
-  const views = element('div', 'views');
-  for (const view of VIEWS) views.append(button(view.name === 'Oblique' ? 'Reset view' : view.name, () => stage.look(view.from)));
   const scale = colorBar(marks);
   let times = 1;
   const update = () => stage.show(moment.frame, most, times);
