@@ -2,7 +2,8 @@
 // The errors of seeds in a section: an open mark at the planned place, joined to the seed at rest by a line. Seeds that
 // were found on images are crosses.
 import { inPicture } from '../dose/planes';
-import { add, NEAR_MM, type MoreMarks } from '../dose/section_picture';
+import { add } from '../../../shared/svg';
+import { NEAR_MM, type MoreMarks } from '../dose/section_picture';
 import { capital, type ImplantData } from './data';
 
 const RADIUS = 1.05;  // [mm] of an open mark, so that a seed seen from its end lies inside
