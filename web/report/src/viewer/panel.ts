@@ -2,16 +2,16 @@
 // The interactive view: stage, time slider, and controls of its appearance.
 import type { ReportData } from '../data';
 import type { Moment } from '../moment';
-import { button, element } from '../../../shared/dom';
+import { button, element, switchOf } from '../../../shared/dom';
 import { colorBar, contactKey, scaleMarks } from '../../../shared/keys';
-import { regionRow } from '../../../shared/region_look';
+import { regionRow, rowName } from '../../../shared/region_look';
 import { openStage } from '../stage_box';
 import { Stage } from './stage';
 
 function regionList(stage: Stage): HTMLElement {
   const list = element('div', 'regions');
   for (const mesh of stage.regions) {
-    list.append(regionRow(mesh, () => {
+    list.append(regionRow(mesh, rowName(mesh.region), mesh.region.color, () => {
       mesh.applyLook();
       stage.draw();
     }));
@@ -21,16 +21,12 @@ function regionList(stage: Stage): HTMLElement {
 
 function contactList(stage: Stage): HTMLElement {
   const row = element('div', 'contacts');
-  const label = element('label');
-  const box = element('input');
-  box.type = 'checkbox';
-  box.checked = true;
-  box.addEventListener('change', () => {
-    stage.contacts.object.visible = box.checked;
+  const { object } = stage.contacts;
+  const shown = switchOf('Contact points', true, null, (on) => {
+    object.visible = on;
     stage.draw();
   });
-  label.append(box, 'Contact points');
-  row.append(label, contactKey());
+  row.append(shown, contactKey());
   return row;
 }
 
