@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Labels of events above a plot, in as many lanes as needed so that they do not overlap, each with a line to its point.
 import type uPlot from 'uplot';
-import { font, fontSize, INK, lineScale, PALE } from './plot_style';
+import { canvasFont, font, fontSize, INK, lineScale, PALE } from './plot_style';
 
 export interface PlacedEvent {
   event: { label: string; color?: string };
@@ -40,7 +40,7 @@ const widths = new Map<string, number>();
 let measuring: CanvasRenderingContext2D | null = null;
 
 /** Width of a text [CSS px]. The results are cached, because few labels are measured often. */
-function measure(text: string): number {
+export function textWidth(text: string): number {
   measuring ??= document.createElement('canvas').getContext('2d');
   if (!measuring) return text.length * fontSize() * 0.55;
   const key = `${font()} ${text}`;
@@ -59,7 +59,7 @@ export function laneHeight(): number {
 
 /** Height [CSS px] of the labels above the plotting area if `width` px show `from` … `to`. */
 export function labelsHeight(events: PlacedEvent[], from: number, to: number, width: number): number {
-  const labels = arrange(events, (x) => ((x - from) / (to - from)) * width, width, measure);
+  const labels = arrange(events, (x) => ((x - from) / (to - from)) * width, width, textWidth);
   const lanes = labels.reduce((most, l) => Math.max(most, l.lane + 1), 0);
   return lanes * laneHeight() + 8;
 }
@@ -69,12 +69,12 @@ export function drawEvents(plot: uPlot, events: PlacedEvent[]): void {
   const ratio = devicePixelRatio;
   const { ctx } = plot;
   const { left, top, width, height } = plot.bbox;
-  const labels = arrange(events, (x) => plot.valToPos(x, 'x'), width / ratio, measure);
+  const labels = arrange(events, (x) => plot.valToPos(x, 'x'), width / ratio, textWidth);
   const lane = laneHeight() * ratio;
   const unit = ratio * lineScale();
   const free = Math.floor((top / ratio - 4) / laneHeight());
   ctx.save();
-  ctx.font = font().replace(/^[\d.]+/, (size) => String(parseFloat(size) * ratio));
+  ctx.font = canvasFont();
   ctx.textAlign = 'left';
   ctx.textBaseline = 'middle';
   for (const label of labels) {

@@ -14,9 +14,14 @@ export const CURVES = [
 ] as const;
 export type CurveKey = (typeof CURVES)[number]['key'];
 
-/** Text size of the page [CSS px]. Plots use it, so that they grow with the screen. */
+/** Text size of the page [CSS px]. */
+export function rem(): number {
+  return parseFloat(getComputedStyle(document.documentElement).fontSize);
+}
+
+/** Text size of plots [CSS px], which grow with the screen. */
 export function fontSize(): number {
-  return parseFloat(getComputedStyle(document.documentElement).fontSize) * 0.82;
+  return rem() * 0.82;
 }
 
 /** Scale of lines and dots, in proportion to the text size: 1 on a usual screen. */
@@ -28,9 +33,14 @@ export function font(): string {
   return `${fontSize().toFixed(1)}px ${getComputedStyle(document.body).fontFamily}`;
 }
 
+/** The same for a canvas, whose unit is a pixel of the device. */
+export function canvasFont(): string {
+  return `${fontSize() * devicePixelRatio}px ${getComputedStyle(document.body).fontFamily}`;
+}
+
 export function axis(label: string, size: number): uPlot.Axis {
   return {
-    label,
+    label: label || undefined,
     labelFont: font(),
     font: font(),
     labelSize: fontSize() * 1.7,
@@ -40,15 +50,6 @@ export function axis(label: string, size: number): uPlot.Axis {
     grid: { stroke: GRID, width: 1 },
     ticks: { stroke: GRID, width: 1, size: 5 },
   };
-}
-
-/** Resizes a plot with the width of its box. */
-export function followWidth(box: HTMLElement, plot: uPlot): void {
-  new ResizeObserver(() => {
-    const width = box.clientWidth;
-    const height = box.clientHeight;
-    if (width > 0 && (width !== plot.width || height !== plot.height)) plot.setSize({ width, height });
-  }).observe(box);
 }
 
 /** A number with its unit and a readable number of digits. */

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The appearance of a region's surface, and the row of controls that changes it.
 import type * as THREE from 'three';
-import { element } from './dom';
+import { element, switchOf } from './dom';
 
 const HARDLY = 0.005;  // surfaces with less opacity are invisible
 const OPAQUE = 0.99;
@@ -38,32 +38,28 @@ export function applyColors(surface: RegionLook, byDisplacement: boolean): void 
   material.needsUpdate = true;
 }
 
-/** The row of controls of a region. @param changed called after the opacity or the visibility has changed */
-export function regionRow(surface: RegionLook, changed: () => void): HTMLElement {
-  const { region } = surface;
+/** The row of controls of a surface. @param changed called after the opacity or the visibility has changed */
+export function regionRow(surface: { visible: boolean; opacity: number }, name: string, color: string, changed: () => void): HTMLElement {
   const row = element('div', 'region');
-  const label = element('label');
-  const box = element('input');
-  box.type = 'checkbox';
-  box.checked = surface.visible;
-  box.addEventListener('change', () => {
-    surface.visible = box.checked;
-    changed();
-  });
-  const swatch = element('span', 'swatch');
-  swatch.style.background = region.color;
-  label.append(box, swatch, region.label + (region.target ? ' (target)' : ''));
   const slider = element('input');
   slider.type = 'range';
   slider.min = '0';
   slider.max = '1';
   slider.step = '0.01';
   slider.value = String(surface.opacity);
-  slider.setAttribute('aria-label', `Opacity of ${region.label}`);
+  slider.setAttribute('aria-label', `Opacity of ${name}`);
   slider.addEventListener('input', () => {
     surface.opacity = slider.valueAsNumber;
     changed();
   });
-  row.append(label, slider);
+  row.append(switchOf(name, surface.visible, color, (on) => {
+    surface.visible = on;
+    changed();
+  }), slider);
   return row;
+}
+
+/** The name of a region in its row. */
+export function rowName({ label, target }: { label: string; target: boolean }): string {
+  return label + (target ? ' (target)' : '');
 }

@@ -7,3 +7,11 @@ export function svg<K extends keyof SVGElementTagNameMap>(tag: K, attributes: Re
   for (const [name, value] of Object.entries(attributes)) e.setAttribute(name, String(value));
   return e;
 }
+
+/** The same at the end of another element. */
+export function add<K extends keyof SVGElementTagNameMap>(parent: Element, tag: K, attributes: Record<string, string | number>, text = ''): SVGElementTagNameMap[K] {
+  const e = svg(tag, attributes);
+  e.textContent = text;
+  parent.append(e);
+  return e;
+}

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tests of the page report.html of an implant.
 #include "report_page.hpp"
-#include "results/implant/cause_picture.hpp"
-#include "results/implant/error_pictures.hpp"
 #include "results/implant/found_csv.hpp"
 #include "results/implant/implant_page.hpp"
 #include "results/implant/implant_tables.hpp"
@@ -46,6 +44,11 @@ std::string page_of(const ImplantOutcome& implant) {
   return page ? *page : page.error().message();
 }
 
+/// The data for the page's scripts.
+nlohmann::json data_of(const std::string& page) {
+  return nlohmann::json::parse(between(page, "id=\"implant-data\">", "</script>"));
+}
+
 }  // namespace
 
 TEST(ImplantPage, has_the_figures_of_errors_and_doses_and_no_slot_left) {
@@ -70,7 +73,7 @@ TEST(ImplantPage, links_to_the_reports_of_both_doses_and_names_the_files_beside_
   const std::string text = markup(page_of(outcome()));
   for (const char* part :
        {"href=\"planned/report.html\"", "href=\"delivered/report.html\"", "seeds.csv", "summary.json"})
-    EXPECT_EQ(count(text, part), 1U) << part;
+    EXPECT_GE(count(text, part), 1U) << part;
   EXPECT_EQ(count(text, "src=\"http") + count(text, "href=\"http"), 0U) << "all assets are in the page";
 }
 
@@ -141,8 +144,7 @@ TEST(ImplantPage, says_what_the_swelling_takes_away_and_when_only_where_the_glan
   const std::string page = page_of(outcome());
   const std::string section = between(page, "<section aria-labelledby=\"oedema\">", "</section>");
   EXPECT_EQ(count(section, "takes away 14.0 Gy (9.3&nbsp;%), half of it within the first 8 days"), 1U) << section;
-  EXPECT_EQ(count(section, "with swelling: 136 Gy in the end"), 1U);
-  EXPECT_EQ(count(section, "without: 150 Gy in the end"), 1U);
+  EXPECT_EQ(count(section, "id=\"oedema-charts\""), 1U);
   const auto json = nlohmann::json::parse(implant_json(outcome()))["implant"]["oedema"];
   ASSERT_EQ(json["moments"].size(), 17U);
   EXPECT_NEAR(json["moments"][0]["swelling_percent"][2].get<double>(), 14.5, 1e-12);
@@ -151,14 +153,13 @@ TEST(ImplantPage, says_what_the_swelling_takes_away_and_when_only_where_the_glan
   EXPECT_DOUBLE_EQ(json["D90_taken_away_Gy"].get<double>(), 14.0);
   ImplantOutcome without = outcome();
   without.oedema.reset();
-  EXPECT_EQ(count(page_of(without), "Dose while the gland swells"), 0U);
+  const std::string page_without = page_of(without);
+  EXPECT_EQ(count(page_without, "Dose while the gland swells"), 0U);
+  EXPECT_TRUE(data_of(page_without)["oedema"].is_null());
   EXPECT_TRUE(nlohmann::json::parse(implant_json(without))["implant"]["oedema"].is_null());
 }
 
 TEST(ImplantPage, gives_the_scripts_the_shafts_of_needles_in_place_together_and_says_so) {
-  const auto data_of = [](const std::string& page) {
-    return nlohmann::json::parse(between(page, "id=\"implant-data\">", "</script>"));
-  };
   const std::string page = page_of(outcome());
   const auto needles = data_of(page)["needles"];
   ASSERT_EQ(needles.size(), outcome().history.needles.size() + 2);
@@ -173,20 +174,23 @@ TEST(ImplantPage, gives_the_scripts_the_shafts_of_needles_in_place_together_and_
   alone.history.stabilising.clear();
   for (NeedleHistory& of : alone.history.needles)
     std::erase_if(of.record.shapes, [](const NeedleShape& shape) { return shape.when == kAllInPlace; });
-  EXPECT_TRUE(data_of(page_of(alone))["needles"].empty());
-  EXPECT_EQ(count(page_of(alone), "Shafts are those of needles"), 0U);
+  const std::string page_alone = page_of(alone);
+  EXPECT_TRUE(data_of(page_alone)["needles"].empty());
+  EXPECT_EQ(count(page_alone, "Shafts are those of needles"), 0U);
 }
 
-TEST(OedemaPicture, has_a_curve_for_each_direction_where_they_differ_and_bears_shrinking) {
+TEST(OedemaCurves, follow_the_width_along_each_axis_and_end_as_the_course_does) {
   DoseCourse course = *outcome().oedema;
-  EXPECT_EQ(count(results::oedema_picture(course), "<path d=\"M62.0 "), 4U);
   course.swelling.at_start = Vec3(0.1, 0.2, -0.05);
-  const std::string svg = results::oedema_picture(course);
-  EXPECT_EQ(count(svg, "<path d=\"M62.0 "), 6U);
-  EXPECT_EQ(count(svg, "inferior to superior"), 1U);
-  EXPECT_EQ(count(svg, "nan"), 0U);
+  const auto curves = results::oedema_curves_json(course);
+  ASSERT_EQ(curves["days"].size(), 121U);
+  EXPECT_DOUBLE_EQ(curves["days"].back().get<double>(), 4.0 * course.half_life_days);
+  for (const char* name : {"D90_Gy", "D90_without_swelling_Gy"}) EXPECT_EQ(curves[name].size(), 121U);
+  EXPECT_NEAR(curves["swelling_percent"][1][0].get<double>(), 20.0, 1e-12);
+  EXPECT_NEAR(curves["swelling_percent"][2][0].get<double>(), -5.0, 1e-12);
+  EXPECT_EQ(curves["in_the_end_Gy"], (std::vector<double>{136.0, 150.0, 14.0}));
   for (DoseMoment& moment : course.moments) std::swap(moment.d90_Gy, moment.d90_without_swelling_Gy);
-  EXPECT_EQ(count(results::oedema_picture(course), "Added to D90"), 1U);
+  EXPECT_DOUBLE_EQ(results::oedema_curves_json(course)["in_the_end_Gy"][2].get<double>(), -14.0);
   EXPECT_NE(results::oedema_words(course).find("adds 14.0 Gy"), std::string::npos);
   EXPECT_NE(results::oedema_words(course).find("5 % narrower from inferior to superior"), std::string::npos);
 }
@@ -194,9 +198,9 @@ TEST(OedemaPicture, has_a_curve_for_each_direction_where_they_differ_and_bears_s
 TEST(ImplantPage, can_be_made_when_every_seed_is_lost) {
   ImplantOutcome implant = outcome();
   for (SeedHistory& seed : implant.history.seeds) seed.lost = true;
-  const std::string text = markup(page_of(implant));
+  const std::string page = page_of(implant), text = markup(page);
   EXPECT_EQ(count(text, "{{") + count(text, "nan"), 0U);
-  EXPECT_EQ(count(text, "No seed is left in the patient."), 1U);
+  for (const auto& seed : data_of(page)["seeds"]) EXPECT_TRUE(seed["rest_mm"].is_null());
 }
 
 TEST(ImplantPage, has_a_section_about_seeds_found_on_images_only_where_there_are_any) {
@@ -211,18 +215,16 @@ TEST(ImplantPage, has_a_section_about_seeds_found_on_images_only_where_there_are
   EXPECT_EQ(count(section, "more than chance"), 1U);
   EXPECT_EQ(count(section, "(no. 4, 11 of the plan)"), 1U);
   EXPECT_EQ(count(section, "<td>matches no simulated seed</td>"), 1U);
-  EXPECT_EQ(count(section, "<title>"), 3U * (41U + 1U)) << "three pictures, and the legend of the thirds";
   EXPECT_EQ(count(section, "<td>not found</td>"), 2U);
   EXPECT_EQ(count(section, "<td>lost in the simulation</td>"), 1U);
-  EXPECT_EQ(count(section, "stroke-dasharray"), 4U) << "the lines of the common shift, and their legend";
   const std::string table = between(section, "<table class=\"figures errors found-errors\">", "</table>");
   EXPECT_EQ(count(table, fmt::format("<td class=\"number\">{:.2f}</td>", comparison.as_found.error.mean_mm)), 1U);
-  EXPECT_EQ(count(section, "not explained by the simulation"), 1U);
   EXPECT_EQ(count(text, "href=\"found/report.html\""), 1U);
   EXPECT_EQ(count(text, "found.csv</code> beside") + count(text, "<code>found.csv</code>."), 1U);
-  const auto data = nlohmann::json::parse(between(page, "id=\"implant-data\">", "</script>"));
-  EXPECT_EQ(data["found"].size(), 42U);
-  EXPECT_TRUE(data["found"][41]["number"].is_null());
+  const auto data = data_of(page);
+  EXPECT_EQ(data["found"]["seeds"].size(), 41U);
+  EXPECT_EQ(data["found"]["not_dropped"].size(), 1U);
+  EXPECT_EQ(data["found"]["as_found"]["parts"].back()["cause"], "not explained by the simulation");
   EXPECT_EQ(data["found_percent"].size(), data["planned_percent"].size());
 }
 
@@ -243,7 +245,7 @@ TEST(ImplantPage, shows_compensation_and_span_where_they_were_asked_for) {
   implant.before = other;
   implant.spans = {other, other};
   implant.spans[1].name = "tissue soft";
-  const std::string text = markup(page_of(implant));
+  const std::string page = page_of(implant), text = markup(page);
   EXPECT_EQ(count(text, "{{") + count(text, "nan"), 0U);
   const std::string before = between(text, "id=\"compensation\"", "</section>");
   const double mean = seed_errors(implant.history.seeds).mean_mm;
@@ -253,7 +255,10 @@ TEST(ImplantPage, shows_compensation_and_span_where_they_were_asked_for) {
   EXPECT_EQ(count(before, "<table class=\"goals\">"), 1U);
   const std::string span = between(text, "id=\"span\"", "</section>");
   EXPECT_EQ(count(span, "Firm tissue</th>") + count(span, "Soft tissue</th>"), 2U) << "columns of the goals";
-  EXPECT_EQ(count(span, "stroke-width=\"2.5\""), 6U) << "three curves, and three lines of the legend";
+  const auto choices = data_of(page)["choices"];
+  ASSERT_EQ(choices["span"].size(), 3U);
+  EXPECT_EQ(choices["span"][1]["distances_mm"].size(), 43U) << "the lost seed has no distance";
+  EXPECT_EQ(choices["compensation"][0]["name"], "Before compensation");
   EXPECT_EQ(count(span, "errors found on imaging"), 1U);
   const auto json = nlohmann::json::parse(implant_json(implant));
   EXPECT_TRUE(json["implant"]["spans"][0]["agreement"]["explained_percent"].is_number());
@@ -343,41 +348,25 @@ TEST(TemporaryPage, speaks_of_dwell_positions_and_catheters_and_has_three_places
 }
 
 TEST(TemporaryPage, gives_the_scripts_its_words) {
-  const auto nouns_on = [](const ImplantOutcome& implant) {
-    return nlohmann::json::parse(between(page_of(implant), "id=\"implant-data\">", "</script>"))["nouns"];
-  };
+  const auto nouns_on = [](const ImplantOutcome& implant) { return data_of(page_of(implant))["nouns"]; };
   EXPECT_EQ(nouns_on(temporary_outcome())["sources"], "dwell positions");
   EXPECT_EQ(nouns_on(temporary_outcome())["needle"], "catheter");
   EXPECT_EQ(nouns_on(outcome())["sources"], "seeds");
   EXPECT_EQ(nouns_on(outcome())["needle"], "needle");
 }
 
-TEST(CausePicture, leaves_out_causes_that_moved_no_seed_and_a_sentence_says_so) {
-  ImplantHistory history = outcome().history;
-  std::string picture = results::cause_picture(history);
-  EXPECT_EQ(count(picture, "class=\"group\""), 4U) << "three causes and all together";
-  EXPECT_EQ(count(picture, ">strand<") + count(picture, ">release<") + count(picture, ">aim<"), 0U);
-  EXPECT_EQ(count(results::causes_left_out(history), "strand, release, aim and probe"), 1U);
-  for (SeedHistory& seed : history.seeds) {
+TEST(CausesOnThePage, are_those_that_moved_a_seed_and_a_sentence_names_the_others) {
+  ImplantOutcome implant = outcome();
+  const auto causes = data_of(page_of(implant))["causes"];
+  ASSERT_EQ(causes.size(), 3U);
+  EXPECT_EQ(causes[0]["name"], "needle bend");
+  EXPECT_EQ(count(results::causes_left_out(implant.history), "strand, release, aim and probe"), 1U);
+  for (SeedHistory& seed : implant.history.seeds) {
     for (const SeedCause cause : {SeedCause::strand, SeedCause::release, SeedCause::aim, SeedCause::probe})
       seed.by(cause) = Vec3(0, 0, 0.2);
   }
-  picture = results::cause_picture(history);
-  EXPECT_EQ(count(picture, "class=\"group\""), 8U);
-  EXPECT_EQ(results::causes_left_out(history), "");
-}
-
-TEST(ErrorPictures, have_a_mark_for_each_seed_that_is_left) {
-  ImplantHistory history = outcome().history;
-  std::string pictures = results::error_pictures(history);
-  EXPECT_EQ(count(pictures, "<figure>"), 3U);
-  EXPECT_EQ(count(pictures, "<title>"), 3U * 43U);
-  EXPECT_EQ(count(pictures, "beyond the scale"), 0U);
-  history.seeds[0].rest_mm.z() -= 40.0;
-  pictures = results::error_pictures(history);
-  EXPECT_EQ(count(pictures, "<title>"), 3U * 43U);
-  EXPECT_EQ(count(pictures, "fill=\"none\" stroke-width"), 1U) << "an open mark at the edge";
-  EXPECT_EQ(count(pictures, "1 seed has such one."), 1U);
+  EXPECT_EQ(data_of(page_of(implant))["causes"].size(), 7U);
+  EXPECT_EQ(results::causes_left_out(implant.history), "");
 }
 
 TEST(NeedleTable, has_a_dash_where_there_is_no_gland) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The reports of doses and implants on paper: printed as A4 by the browser, no text leaves a page or covers other text.
+// On the screen, their charts tell what the pointer is at.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { copyFileSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
@@ -133,7 +134,7 @@ test('the report of a plan that is compared with a dose grid fits on A4', async 
   stylet(...plan, '-o', 'first');
   stylet(...plan, '--compare', 'first/dose.dcm', '--compare-shift', '1', '0', '0', '-o', 'dose');
   const pages = await print(path.join(folder, 'dose/report.html'), 'dose');
-  checkPaper(pages, [/Goals/, /Gamma index/, /Computed dose minus the dose of the file/, /SHA-256/, /Checked by/]);
+  checkPaper(pages, [/Goals/, /Volume \[%\]/, /Gamma index/, /Computed dose minus the dose of the file/, /SHA-256/, /Checked by/]);
 });
 
 test('the report of an implant fits on A4', async () => {
@@ -141,5 +142,38 @@ test('the report of an implant fits on A4', async () => {
   writeFileSync(path.join(folder, 'two.csv'), TWO_NEEDLES);
   stylet('implant', 'two.toml', '-o', 'implant');
   const pages = await print(path.join(folder, 'implant/report.html'), 'implant');
-  checkPaper(pages, [/Goals/, /Why/, /SHA-256/, /Checked by/]);
+  checkPaper(pages, [/Goals/, /Volume \[%\]/, /Why/, /Mean error \[mm\]/, /Error \[mm\]/, /SHA-256/, /Checked by/]);
+});
+
+/** What a chart tells at the first place from its upper left corner at which it tells anything. */
+const told = (plot) => plot.evaluate((box) => {
+  const over = box.querySelector('.u-over');
+  const { left, top, width, height } = over.getBoundingClientRect();
+  for (let y = 10; y < height; y += 10) {
+    for (let x = 10; x < width; x += 10) {
+      over.dispatchEvent(new MouseEvent('mousemove', { clientX: left + x, clientY: top + y }));
+      const readout = box.querySelector('.readout');
+      if (!readout.hidden) return readout.textContent;
+    }
+  }
+  return 'nothing';
+});
+
+test('the charts of an implant fit into narrow windows and tell the values at the pointer', async () => {
+  const report = pathToFileURL(path.join(folder, 'implant/report.html')).href;
+  for (const width of [390, 1366]) {
+    const { page, problems } = await openVisitor(browser, report, { width });
+    const plots = await page.locator('.plot').all();
+    assert.equal(plots.length, 4, 'histograms and the errors along three axes');
+    for (const plot of plots) {
+      const { x, width: wide } = await plot.locator('canvas').boundingBox();
+      assert.ok(x >= 0 && x + wide <= width, `a chart reaches from ${x} to ${x + wide} px`);
+    }
+    assert.match(await told(plots[0]), /^[\d.]+ Gy = \d+ %.*, delivered: [\d.]+ %.*, planned: [\d.]+ %/);
+    assert.match(await told(plots[3]), /^Seed \d, needle [CE]4[\d.]+ mm to (superior|inferior)$/);
+    const bars = await page.locator('#cause-chart .track').allTextContents();
+    assert.ok(bars.length >= 8 && bars.every((text) => /^[+−]?\d+\.\d\d$/.test(text)), bars.join(' '));
+    assert.deepEqual(problems, []);
+    await page.close();
+  }
 });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A canvas that fills its box and is sharp on every screen. It is drawn at most once per repaint of the page.
-import { onRepaint } from './repaint';
+import { onRepaint } from '../../shared/repaint';
 
 export class CanvasBox {
   readonly canvas = document.createElement('canvas');

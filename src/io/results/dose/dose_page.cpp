@@ -2,7 +2,6 @@
 #include "dose/dose_page.hpp"
 
 #include "dose/dose_text.hpp"
-#include "dose/dvh_picture.hpp"
 #include "dose/dvh_table.hpp"
 #include "dose/page_data.hpp"
 #include "dose/page_record.hpp"
@@ -29,7 +28,7 @@ Result<std::string> dose_page(const DoseEvaluation& evaluation) {
       {"warnings", box_of_warnings(evaluation.warnings)},
       {"tiles", dose_tiles(evaluation)},
       {"goals", goal_table({{"Plan", &evaluation}})},
-      {"dvh_picture", dvh_picture(evaluation.structures, dvh, colours)},
+      {"dvh_file", "dvh.csv"},
       {"figures", dvh_figures({{"Plan", &evaluation}}, colours)},
       {"points", points_and_comparison(evaluation)},
       {"seeds", seed_table(evaluation)},

@@ -2,6 +2,7 @@
 #include "dose/page_shell.hpp"
 
 #include "report/assets.hpp"
+#include "report/html_parts.hpp"
 #include "report/text.hpp"
 #include "stylet/core/version.hpp"
 
@@ -13,8 +14,7 @@ namespace {
 
 // The places where scripts put histograms and sections (web/report/src/dose/page.ts).
 constexpr const char* kDvhPlot =
-    "<div class=\"needs-script on-screen\"><div class=\"legend\" id=\"dvh-legend\"></div><div class=\"plot\" "
-    "id=\"dvh-plot\">"
+    "<div class=\"needs-script\"><div class=\"legend\" id=\"dvh-legend\"></div><div class=\"plot\" id=\"dvh-plot\">"
     "</div></div>";
 constexpr const char* kSectionPictures =
     "<div class=\"needs-script\"><div class=\"iso-key\" id=\"iso-key\"></div><div class=\"sections\" "
@@ -24,7 +24,7 @@ constexpr const char* kSectionPictures =
 
 Result<std::string> page_about_dose(std::string_view body, Slots slots) {
   constexpr const char* kName = "report.html";
-  slots["dvh_plot"] = kDvhPlot + ("<div class=\"for-paper\">" + slots["dvh_picture"] + "</div>");
+  slots["dvh_plot"] = kDvhPlot + chart_note(slots["dvh_file"]);
   slots["section_pictures"] = kSectionPictures;
   Result<std::string> filled = fill_page(body, slots, kName);
   if (!filled) return filled;

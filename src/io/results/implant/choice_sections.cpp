@@ -4,7 +4,6 @@
 #include "dose/page_tables.hpp"
 #include "dose/structure_look.hpp"
 #include "fixed_number.hpp"
-#include "implant/distance_picture.hpp"
 #include "implant/implant_tables.hpp"
 #include "implant/implant_words.hpp"
 #include "report/html_parts.hpp"
@@ -13,17 +12,10 @@
 #include <fmt/format.h>
 
 #include <cctype>
+#include <tuple>
 
 namespace stylet::results {
 namespace {
-
-/// The implant under one choice.
-struct ImplantChoice {
-  std::string name;  ///< as a heading, "Firm"
-  const ImplantHistory* history = nullptr;
-  const DoseEvaluation* dose = nullptr;
-  std::string colour, dashes;  ///< of its curve
-};
 
 /// "1.9 mm (firm), 2.1 mm (typical) and 2.8 mm (soft)"
 std::string figures_in_words(const std::vector<ImplantChoice>& choices, const std::vector<double>& values, int digits,
@@ -68,55 +60,49 @@ std::string choice_sentence(const std::vector<ImplantChoice>& choices, const std
   return text + explained_sentence(choices, found);
 }
 
-/// @param id of the heading @param intro HTML
-std::string choice_section(const char* id, const char* heading, const char* intro,
-                           const std::vector<ImplantChoice>& choices, const ImplantOutcome& outcome) {
+}  // namespace
+
+std::string choice_html(const ChoiceSection& section, const ImplantOutcome& outcome) {
   std::string head = text_heading("") + figure_heading(capital(nouns_of(outcome.history).sources));
   for (const char* name : {"Mean distance [mm]", "95 % within [mm]", "Left [mm]", "Posterior [mm]", "Superior [mm]"})
     head += figure_heading(name);
   std::string rows;
-  std::vector<DistanceCurve> curves;
   std::vector<NamedDose> doses{{"Planned", &outcome.planned}};
-  for (const ImplantChoice& choice : choices) {
+  for (const ImplantChoice& choice : section.choices) {
     rows += error_row(choice.name, seed_errors(choice.history->seeds));
-    curves.push_back({choice.name, &choice.history->seeds, choice.colour, choice.dashes});
     doses.push_back({choice.name, choice.dose});
   }
   return fmt::format(
       "<section aria-labelledby=\"{0}\"><h2 id=\"{0}\">{1}</h2><p>{2}</p><p>{3}</p>{4}<div "
-      "class=\"choice\">{5}</div>{6}"
-      "</section>",
-      id, heading, intro, html_prose(choice_sentence(choices, outcome.found)),
-      scrolled_table("scroll", "figures errors", head, rows), distance_picture(curves), goal_table(doses));
+      "class=\"distances needs-script\"><div class=\"plot\" id=\"{0}-chart\"></div></div>{5}{6}</section>",
+      section.id, section.heading, section.intro, html_prose(choice_sentence(section.choices, outcome.found)),
+      scrolled_table("scroll", "figures errors", head, rows), chart_note("summary.json"), goal_table(doses));
 }
 
-}  // namespace
-
-std::string compensation_section(const ImplantOutcome& outcome) {
-  if (!outcome.before) return {};
-  return choice_section(
-      "compensation", "Before and after compensation",
-      "The needles were aimed beside their plan by the mean error of their seeds, with the opposite sign, so that the "
-      "seeds come to rest nearer to their plan. The rest of this page is about the implant after compensation. What "
-      "differs from seed to seed of one needle cannot be aimed away.",
-      {{"Before compensation", &outcome.before->history, &outcome.before->delivered, "#b5179e", "7 5"},
-       {"After compensation", &outcome.history, &outcome.delivered, "#0072b2", ""}},
-      outcome);
-}
-
-std::string span_section(const ImplantOutcome& outcome) {
-  if (outcome.spans.size() != 2) return {};
-  const OtherImplant& firm = outcome.spans[0];
-  const OtherImplant& soft = outcome.spans[1];
-  return choice_section(
-      "span", "Firm, typical and soft tissue",
-      "The same needles in firmer and in softer tissue. Nobody has measured the tissue of this patient: "
-      "a figure is only as sure as it is alike in all three. The rest of this page is about typical "
-      "tissue.",
-      {{"Firm tissue", &firm.history, &firm.delivered, "#b5179e", "7 5"},
-       {"Typical tissue", &outcome.history, &outcome.delivered, "#23262b", ""},
-       {"Soft tissue", &soft.history, &soft.delivered, "#0072b2", "2 4"}},
-      outcome);
+std::vector<ChoiceSection> choice_sections(const ImplantOutcome& outcome) {
+  std::vector<ChoiceSection> sections;
+  if (outcome.before) {
+    sections.push_back(
+        {"compensation",
+         "Before and after compensation",
+         "The needles were aimed beside their plan by the mean error of their seeds, with the opposite sign, so that "
+         "the seeds come to rest nearer to their plan. The rest of this page is about the implant after compensation. "
+         "What differs from seed to seed of one needle cannot be aimed away.",
+         {{"Before compensation", &outcome.before->history, &outcome.before->delivered},
+          {"After compensation", &outcome.history, &outcome.delivered}}});
+  }
+  if (outcome.spans.size() == 2) {
+    const auto& [firm, soft] = std::tie(outcome.spans[0], outcome.spans[1]);
+    sections.push_back({"span",
+                        "Firm, typical and soft tissue",
+                        "The same needles in firmer and in softer tissue. Nobody has measured the tissue of this "
+                        "patient: a figure is only as sure as it is alike in all three. The rest of this page is about "
+                        "typical tissue.",
+                        {{"Firm tissue", &firm.history, &firm.delivered},
+                         {"Typical tissue", &outcome.history, &outcome.delivered},
+                         {"Soft tissue", &soft.history, &soft.delivered}}});
+  }
+  return sections;
 }
 
 }  // namespace stylet::results

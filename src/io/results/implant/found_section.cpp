@@ -2,8 +2,6 @@
 #include "implant/found_section.hpp"
 
 #include "fixed_number.hpp"
-#include "implant/error_pictures.hpp"
-#include "implant/found_pictures.hpp"
 #include "implant/implant_tables.hpp"
 #include "implant/implant_words.hpp"
 #include "report/html_parts.hpp"
@@ -43,18 +41,6 @@ std::string paragraphs_of(const ImplantHistory& history, const FoundImplant& fou
   for (std::size_t k = 0; k < sentences.size(); ++k)
     html += (k % 2 == 0 ? (k == 0 ? "<p>" : "</p><p>") : " ") + html_prose(sentences[k]);
   return html + "</p>";
-}
-
-/// The legend of the lines of the pictures.
-std::string key_of_lines() {
-  const auto line = [](const char* look, const char* name) {
-    return fmt::format(
-        "<span><svg width=\"30\" height=\"10\" viewBox=\"0 0 30 10\" aria-hidden=\"true\"><path d=\"M1 5h28\" "
-        "{}/></svg>"
-        "{}</span>",
-        look, name);
-  };
-  return line(kEqualLine, "found as simulated") + line(kShiftedLine, "moved by the common shift");
 }
 
 std::string table_of_found_errors(const FoundComparison& comparison) {
@@ -152,10 +138,12 @@ std::string found_section(const ImplantOutcome& outcome) {
         "that was found is the simulated one; the dashed line is that line moved by the common shift, about which the "
         "seeds scatter. Open marks are ambiguous matches. All three pictures have the same scale.<span "
         "class=\"needs-script-inline\"> Point at a mark to see its seed and needle.</span></p><div "
-        "class=\"third-key\">" +
-        third_key(outcome.history) + key_of_lines() + "</div>" + found_scatters(outcome.history, comparison) +
-        "<h3>What the errors that were found are made of</h3><div class=\"why\"><div>" +
-        found_parts_picture(comparison) +
+        "class=\"needs-script\">"
+        "<div class=\"legend third-key\" id=\"found-key\"></div><div class=\"scatters square\" "
+        "id=\"found-charts\"></div></div>"
+        "<h3>What the errors that were found are made of</h3><div class=\"why\"><div><div class=\"needs-script\" "
+        "id=\"found-parts\"></div>" +
+        chart_note("summary.json") +
         "</div><div><p>The error of a seed is the sum of its simulated parts, the common shift and what the simulation "
         "does not explain. The mean of the product of each part with the whole error is its part of the mean square; "
         "these parts add up to 100 %. A negative part points against the errors on average: without it they would be "

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "implant/implant_data.hpp"
 
+#include "implant/choice_sections.hpp"
+#include "implant/found_json.hpp"
 #include "implant/implant_words.hpp"
+#include "implant/json_parts.hpp"
+#include "implant/oedema_section.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -25,15 +29,29 @@ PageJson curves_json(const DvhTable& dvh) {
   return percent;
 }
 
-/// The seeds that were found on images.
-PageJson found_seeds_json(const ImplantOutcome& outcome) {
+PageJson causes_json(const ImplantHistory& history) {
   PageJson list = PageJson::array();
-  const std::vector<FoundSeed>& found = outcome.found->seeds.seeds;
-  std::vector<PageJson> number_of(found.size());
-  for (const MatchedSeed& matched : outcome.found->comparison.seeds) number_of[matched.found] = matched.seed.number + 1;
-  for (std::size_t k = 0; k < found.size(); ++k)
-    list.push_back({{"found_mm", seed_place_json(found[k].at_mm)}, {"number", number_of[k]}});
+  for (const CauseOfErrors& cause : causes_that_moved(history)) {
+    list.push_back(
+        {{"name", to_string(cause.cause)}, {"mean_mm", cause.mean_mm}, {"mean_xyz_mm", list_of(cause.mean_vector_mm)}});
+  }
   return list;
+}
+
+/// For each section about choices, by its id, the distances of the seeds from their planned places under each choice.
+PageJson choices_json(const ImplantOutcome& outcome) {
+  PageJson sections = PageJson::object();
+  for (const ChoiceSection& section : choice_sections(outcome)) {
+    PageJson& list = sections[section.id] = PageJson::array();
+    for (const ImplantChoice& choice : section.choices) {
+      PageJson& mm =
+          list.emplace_back(PageJson{{"name", choice.name}, {"distances_mm", PageJson::array()}})["distances_mm"];
+      for (const SeedHistory& seed : choice.history->seeds) {
+        if (!seed.lost) mm.push_back(hundredths(seed.error_mm().norm()));
+      }
+    }
+  }
+  return sections;
 }
 
 /// The needles that are in the tissue with others, each at the moment at which all needles of its group are in place:
@@ -75,6 +93,10 @@ std::string implant_page_data(const ImplantOutcome& outcome, const DvhTable& pla
   const ImplantNouns& nouns = nouns_of(history);
   PageJson json = {
       {"planned_percent", curves_json(planned)},
+      {"error", errors_json(seed_errors(history.seeds))},
+      {"causes", causes_json(history)},
+      {"choices", choices_json(outcome)},
+      {"oedema", outcome.oedema ? oedema_curves_json(*outcome.oedema) : PageJson(nullptr)},
       {"nouns",
        {{"source", nouns.source}, {"sources", nouns.sources}, {"needle", nouns.needle}, {"needles", nouns.needles}}},
       {"thirds", thirds},
@@ -83,7 +105,7 @@ std::string implant_page_data(const ImplantOutcome& outcome, const DvhTable& pla
       {"needles", needles_in_place(history)}};
   if (found) {
     json["found_percent"] = curves_json(*found);
-    json["found"] = found_seeds_json(outcome);
+    json["found"] = found_json(history, *outcome.found);
   }
   return json.dump(-1, ' ', false, PageJson::error_handler_t::replace);
 }

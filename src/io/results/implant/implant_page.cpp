@@ -2,16 +2,13 @@
 #include "implant/implant_page.hpp"
 
 #include "dose/dose_text.hpp"
-#include "dose/dvh_picture.hpp"
 #include "dose/dvh_table.hpp"
 #include "dose/page_data.hpp"
 #include "dose/page_record.hpp"
 #include "dose/page_shell.hpp"
 #include "dose/page_tables.hpp"
 #include "dose/structure_look.hpp"
-#include "implant/cause_picture.hpp"
 #include "implant/choice_sections.hpp"
-#include "implant/error_pictures.hpp"
 #include "implant/found_section.hpp"
 #include "implant/implant_data.hpp"
 #include "implant/implant_tables.hpp"
@@ -88,6 +85,8 @@ Result<std::string> implant_page(const ImplantOutcome& outcome) {
   const AllDvh dvh = all_dvh(outcome);
   const DvhTable* found = dvh.found ? &*dvh.found : nullptr;
   const Implant implant = implant_of(history.seeds);
+  std::string choices;
+  for (const ChoiceSection& section : choice_sections(outcome)) choices += choice_html(section, outcome);
   Slots slots{
       {"report", "implant report"},
       {"kicker",
@@ -101,19 +100,16 @@ Result<std::string> implant_page(const ImplantOutcome& outcome) {
       {"tiles", implant_tiles(outcome)},
       {"story", implant_story(outcome)},
       {"goals", goal_table(doses)},
-      {"dvh_picture", dvh_picture(outcome.delivered.structures, dvh.delivered, colours, &dvh.planned, found)},
+      {"chart_note", chart_note("summary.json")},
+      {"dvh_file", "delivered/dvh.csv"},
       {"figures", dvh_figures(doses, colours)},
       {"oedema", oedema_section(outcome.oedema ? &*outcome.oedema : nullptr)},
       {"errors", error_table(history)},
-      {"cause_picture", cause_picture(history)},
       {"cause_meanings", cause_meanings(history)},
       {"causes_left_out", html_prose(causes_left_out(history))},
-      {"third_key", third_key(history)},
-      {"error_pictures", error_pictures(history)},
       {"needles", needle_table(history)},
       {"found", found_section(outcome)},
-      {"compensation", compensation_section(outcome)},
-      {"span", span_section(outcome)},
+      {"choices", choices},
       {"dvh_of_found", found ? " Dotted lines are the dose of the seeds where they were found on imaging." : ""},
       {"marks_of_found", found ? " Crosses are the places where seeds were found on imaging." : ""},
       {"space_of_found", found ? " Orange marks are the places where seeds were found on imaging." : ""},

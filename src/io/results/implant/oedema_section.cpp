@@ -4,6 +4,7 @@
 #include "fixed_number.hpp"
 #include "implant/implant_words.hpp"
 #include "implant/json_parts.hpp"
+#include "report/html_parts.hpp"
 #include "report/text.hpp"
 
 #include <fmt/format.h>
@@ -51,11 +52,33 @@ std::string oedema_section(const DoseCourse* course) {
   if (course == nullptr) return {};
   return fmt::format(
       "<section aria-labelledby=\"oedema\"><h2 id=\"oedema\">Dose while the gland swells</h2><p>{}</p><p>{}</p><div "
-      "class=\"oedema\">{}</div></section>",
+      "class=\"oedema needs-script\" id=\"oedema-charts\"></div>{}</section>",
       html_prose(oedema_words(*course)),
       "The pictures share the days since the implant. D90 is that of the dose accumulated until this day, of the seeds "
       "where they rest.",
-      oedema_picture(*course));
+      chart_note("summary.json"));
+}
+
+nlohmann::ordered_json oedema_curves_json(const DoseCourse& course) {
+  constexpr double kHalfLives = 4.0;  // when 94 % of the dose is given
+  constexpr int kParts = 120;
+  OrderedJson json{{"days", OrderedJson::array()},
+                   {"swelling_percent", {OrderedJson::array(), OrderedJson::array(), OrderedJson::array()}},
+                   {"D90_Gy", OrderedJson::array()},
+                   {"D90_without_swelling_Gy", OrderedJson::array()}};
+  for (int k = 0; k <= kParts; ++k) {
+    const double days = kHalfLives * course.half_life_days * k / kParts;
+    const DoseMoment moment = course.at(days);
+    const Vec3 factors = course.swelling.factors(days);
+    json["days"].push_back(days);
+    for (Index axis = 0; axis < 3; ++axis)
+      json["swelling_percent"][static_cast<std::size_t>(axis)].push_back(100.0 * (factors[axis] - 1.0));
+    json["D90_Gy"].push_back(moment.d90_Gy);
+    json["D90_without_swelling_Gy"].push_back(moment.d90_without_swelling_Gy);
+  }
+  const DoseMoment& last = course.moments.back();
+  json["in_the_end_Gy"] = {last.d90_Gy, last.d90_without_swelling_Gy, last.taken_away_Gy()};
+  return json;
 }
 
 nlohmann::ordered_json oedema_json(const DoseCourse& course) {

@@ -36,4 +36,9 @@ std::string box_of_warnings(const std::vector<std::string>& warnings) {
   return warnings.empty() ? std::string() : "<ul class=\"warnings\">" + sentence_list(warnings) + "</ul>";
 }
 
+std::string chart_note(const std::string& file) {
+  return "<noscript><p class=\"note\">This chart needs JavaScript. Its numbers are in <code>" + file +
+         "</code>.</p></noscript>";
+}
+
 }  // namespace stylet::results

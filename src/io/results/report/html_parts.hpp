@@ -31,6 +31,9 @@ std::string definition(const std::string& name, const std::string& value);
 /// The items of a list of sentences.
 std::string sentence_list(const std::vector<std::string>& sentences);
 
+/// A note for readers without script in the place of a chart. @param file the file with the same numbers
+std::string chart_note(const std::string& file);
+
 /// A list of warnings in its box; nothing without a warning.
 std::string box_of_warnings(const std::vector<std::string>& warnings);
 

@@ -6,7 +6,7 @@ import { drawEvents, labelsHeight, type PlacedEvent } from '../../../shared/even
 import { axis, CURVES, fontSize, INK, lineScale } from '../../../shared/plot_style';
 import { eventLabel, isHarm } from '../event_names';
 import { HARM } from '../palette';
-import { onRepaintEvery } from '../repaint';
+import { onRepaintEvery } from '../../../shared/repaint';
 import type { Session } from '../session';
 import { extremes, ForceRing, type ForceName } from './force_ring';
 

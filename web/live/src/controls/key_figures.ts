@@ -2,7 +2,7 @@
 // The key figures of an insertion, in large numbers: peak force since the start, motion of the gland, and tip error.
 import { element } from '../../../shared/dom';
 import { GlandFit, length } from '../gland_fit';
-import { onRepaintEvery } from '../repaint';
+import { onRepaintEvery } from '../../../shared/repaint';
 import type { Session } from '../session';
 import { hasTipError, isDrawnBack } from '../tip_error';
 import { SAMPLE_WORDS, type Frame } from '../wire';

@@ -2,7 +2,7 @@
 // Current values: depth, speed, tip, forces, and whether steps are in time; and the key figures of the insertion.
 import { element } from '../../../shared/dom';
 import { CURVES } from '../../../shared/plot_style';
-import { onRepaintEvery } from '../repaint';
+import { onRepaintEvery } from '../../../shared/repaint';
 import type { Session } from '../session';
 import { SAMPLE_WORDS, TIP_STATES, type Frame } from '../wire';
 import { KeyFigures } from './key_figures';

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The clinician's view, in place of the 3D view: ultrasound or X-ray, with the controls of scanner, stepper and C-arm.
 import { button, element } from '../../../shared/dom';
-import { onRepaint, onRepaintEvery } from '../repaint';
+import { onRepaint, onRepaintEvery } from '../../../shared/repaint';
 import type { Session } from '../session';
 import type { ProbeState, ShownImage } from './image';
 import { UltrasoundView } from './ultrasound_view';

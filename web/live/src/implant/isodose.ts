@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Isodose lines in a plane through the dose, in percent of the prescribed dose. The plane and the lines are moved with
 // the seeds, because the dose is known in the tissue at rest.
-import { contours } from 'd3-contour';
+import { ringsOf, sliceGrid, type Axis } from '../../../shared/grid_slice';
 import type { Dose } from './implant';
 
 export interface Level { percent: number; color: string; width: number }
@@ -13,33 +13,14 @@ export const LEVELS: Level[] = [
 
 export type Ring = [number, number][];  // coordinates along the other two axes, ordered by axis [mm]
 
-/** The dose in the plane where the coordinate `axis` is `value`, linearly between the grid's points; null outside. */
-export function sliceOf(dose: Dose, axis: 0 | 2, value: number): { width: number; height: number; values: number[] } | null {
-  const { size, origin, spacing, values, unit } = dose;
-  const at = (value - origin[axis]) / spacing;
-  if (!(at >= 0 && at <= size[axis] - 1)) return null;
-  const low = Math.min(Math.floor(at), size[axis] - 2);
-  const share = at - low;
-  const strides = [1, size[0], size[0] * size[1]];
-  const [across, along] = axis === 0 ? [1, 2] : [0, 1];
-  const out: number[] = [];
-  for (let j = 0; j < size[along]; j++) {
-    for (let i = 0; i < size[across]; i++) {
-      const from = i * strides[across] + j * strides[along] + low * strides[axis];
-      out.push(unit * ((1 - share) * values[from] + share * values[from + strides[axis]]));
-    }
-  }
-  return { width: size[across], height: size[along], values: out };
-}
-
 /** The lines of one level in a plane, moved by `motion` [mm]. */
 export function isodoseRings(dose: Dose, axis: 0 | 2, value: number, percent: number, motion: ArrayLike<number>): Ring[] {
-  const slice = sliceOf(dose, axis, value - motion[axis]);
+  const [across, along]: [Axis, Axis] = axis === 0 ? [1, 2] : [0, 1];
+  const { origin, spacing, unit } = dose;
+  const slice = sliceGrid({ ...dose, scale: unit }, axis, across, along, value - motion[axis]);
   if (!slice) return [];
-  const [across, along] = axis === 0 ? [1, 2] : [0, 1];
-  const { origin, spacing } = dose;
-  return contours().size([slice.width, slice.height]).contour(slice.values, percent).coordinates.flatMap((polygon) => polygon.map((ring) =>
-    ring.map(([i, j]) => [origin[across] + motion[across] + spacing * (i - 0.5), origin[along] + motion[along] + spacing * (j - 0.5)] as [number, number])));
+  return ringsOf(slice, percent).map((ring) =>
+    ring.map(([i, j]): [number, number] => [origin[across] + motion[across] + spacing * i, origin[along] + motion[along] + spacing * j]));
 }
 
 /** The isodose lines of a section, computed anew only if plane, dose or motion have changed. */

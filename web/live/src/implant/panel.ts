@@ -2,7 +2,7 @@
 // The plan to follow: dose so far, what to do for the next seed, and the needles of the plan.
 import { button, element } from '../../../shared/dom';
 import type { HandControl } from '../hand';
-import { onRepaintEvery } from '../repaint';
+import { onRepaintEvery } from '../../../shared/repaint';
 import type { Session } from '../session';
 import { depthToGo, droppedOf, isFinished, lostSeeds, nextNeedle, nextSeed, replayWords, whatToDo, type Plan } from './implant';
 

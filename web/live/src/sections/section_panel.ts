@@ -2,7 +2,7 @@
 // A section with its title and the controls of its plane.
 import { button, element } from '../../../shared/dom';
 import type { Session } from '../session';
-import { onRepaint } from '../repaint';
+import { onRepaint } from '../../../shared/repaint';
 import type { Plane } from './plane';
 import { SectionView } from './section_view';
 import { wheelNotches } from '../wheel';

@@ -14,7 +14,7 @@ export class RegionSurface implements RegionLook {
   readonly centre = new THREE.Vector3();
   visible = true;
   opacity: number;
-  private readonly box = new THREE.Box3();  // of the undeformed surface
+  readonly box = new THREE.Box3();  // of the undeformed surface
   private readonly nodes: Uint32Array;      // node numbers of the scene
   private readonly index: Uint32Array;      // corners of the triangles as indices of `nodes`
   private readonly position: THREE.BufferAttribute;
@@ -52,11 +52,6 @@ export class RegionSurface implements RegionLook {
     this.box.getCenter(this.centre);
     this.opacity = this.region.opacity;
     this.applyLook();
-  }
-
-  /** Whether the bounding box of the other region lies inside the bounding box of this region. */
-  holds(other: RegionSurface): boolean {
-    return other !== this && this.box.containsBox(other.box);
   }
 
   get shown(): boolean {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The 3D view with its controls: visible parts, colours, cut, and direction of view.
 import { contactKey, colorBar, scaleMarks } from '../../../shared/keys';
-import { button, element } from '../../../shared/dom';
-import { regionRow } from '../../../shared/region_look';
+import { button, element, switchOf } from '../../../shared/dom';
+import { regionRow, rowName } from '../../../shared/region_look';
 import { VIEWS } from '../../../shared/views';
 import { Anatomy } from '../anatomy';
 import type { Session } from '../session';
@@ -19,16 +19,10 @@ const SMALLEST_SCALE_MM = 0.5;
 
 /** A check box that shows or hides an object of the stage. */
 function visibilityBox(stage: Stage, thing: { object: { visible: boolean } }, text: string): HTMLElement {
-  const label = element('label');
-  const box = element('input');
-  box.type = 'checkbox';
-  box.checked = thing.object.visible;
-  box.addEventListener('change', () => {
-    thing.object.visible = box.checked;
+  return switchOf(text, thing.object.visible, null, (on) => {
+    thing.object.visible = on;
     stage.draw();
   });
-  label.append(box, text);
-  return label;
 }
 
 /**
@@ -250,7 +244,7 @@ export class ViewPanel {
 
   private rowOf(stage: Stage, surface: RegionSurface, i: number): HTMLElement {
     let visible = surface.visible;
-    return regionRow(surface, () => {
+    return regionRow(surface, rowName(surface.region), surface.region.color, () => {
       if (surface.visible !== visible) this.onVisibility(i, (visible = surface.visible));
       surface.applyLook();
       surface.update(this.most);  // a hidden surface is not updated

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The data that the program writes into the page of stylet dose (src/io/results/dose/page_data.cpp), and their decoded
 // form.
+import type { Grid } from '../../../shared/grid_slice';
+
 type Base64 = string;
 export type Triple = [number, number, number];
 
@@ -23,15 +25,6 @@ interface RawData {
     temporary: boolean; length_mm: number; diameter_mm: number;
     places_mm: Base64; axes: Base64; needles: string[]; dwell_s: number[];
   };
-}
-
-/** Values on a regular grid along the patient's axes. */
-export interface Grid {
-  size: Triple;
-  origin: Triple;    // [mm] LPS, the first point
-  spacing: number;   // [mm]
-  scale: number;     // factor on the values
-  values: ArrayLike<number>;  // x varies fastest
 }
 
 export interface Level {

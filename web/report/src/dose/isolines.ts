@@ -1,75 +1,42 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Lines of equal value in a plane through a grid.
-import { contours } from 'd3-contour';
-import type { Grid } from './data';
+import { ringsOf, sliceGrid, type Grid, type Slice } from '../../../shared/grid_slice';
 import type { Plane } from './planes';
 
-/** The values in a plane, linearly between the grid's points. */
-export interface Slice {
-  width: number;
-  height: number;
-  values: Float64Array;
+/** The values in a plane, with their places. */
+export interface PlacedSlice extends Slice {
   place(column: number, row: number): [number, number];  // [mm] in the picture
 }
 
 export type Line = [number, number][];
 
 /** Cuts a grid at a height [mm] along the plane's normal; null outside the grid. */
-export function slice(grid: Grid, plane: Plane, height: number): Slice | null {
-  const { size, origin, spacing, values, scale } = grid;
-  const at = (height - origin[plane.normal]) / spacing;
-  const last = size[plane.normal] - 1;
-  if (!(at >= -0.5 && at <= last + 0.5) || values.length === 0) return null;
-  const low = Math.max(0, Math.min(Math.max(0, last - 1), Math.floor(at)));
-  const high = Math.min(last, low + 1);
-  const share = Math.max(0, Math.min(1, at - low));
-  const strides = [1, size[0], size[0] * size[1]];
-  const width = size[plane.across];
-  const rows = size[plane.down];
-  const out = new Float64Array(width * rows);
-  for (let j = 0; j < rows; j++) {
-    for (let i = 0; i < width; i++) {
-      const start = i * strides[plane.across] + j * strides[plane.down];
-      const a = values[start + low * strides[plane.normal]];
-      const b = values[start + high * strides[plane.normal]];
-      out[i + j * width] = scale * (a + share * (b - a));
-    }
-  }
-  const sign = plane.up ? -1 : 1;
-  return {
-    width, height: rows, values: out,
-    place: (column, row) => [origin[plane.across] + spacing * column, sign * (origin[plane.down] + spacing * row)],
-  };
-}
-
-/** The closed rings around what is at or above a level [mm in the picture]. Rings follow the edge of the grid. */
-function rings({ width, height, values, place }: Slice, level: number): { line: Line; border: boolean[] }[] {
-  // d3-contour takes an array of numbers; the type of its declaration is narrower than what it reads.
-  const shape = contours().size([width, height]).contour(values as unknown as number[], level);
-  return shape.coordinates.flatMap((polygon) => polygon.map((ring) => ({
-    line: ring.map(([x, y]) => place(x - 0.5, y - 0.5)),
-    border: ring.map(([x, y]) => x < 0.5 || y < 0.5 || x > width - 0.5 || y > height - 0.5),
-  })));
+export function slice(grid: Grid, { normal, across, down, up }: Plane, height: number): PlacedSlice | null {
+  const cut = sliceGrid(grid, normal, across, down, height);
+  const { origin, spacing } = grid;
+  const sign = up ? -1 : 1;
+  return cut && { ...cut, place: (column, row) => [origin[across] + spacing * column, sign * (origin[down] + spacing * row)] };
 }
 
 const text = (line: Line) => line.map(([x, y]) => `${x.toFixed(2)} ${y.toFixed(2)}`).join('L');
 
 /** The filled shape of what is at or above a level, as the path of an SVG picture. */
-export function shapePath(plane: Slice, level: number): string {
-  return rings(plane, level).map(({ line }) => `M${text(line)}Z`).join('');
+export function shapePath(plane: PlacedSlice, level: number): string {
+  return ringsOf(plane, level).map((ring) => `M${text(ring.map(([x, y]) => plane.place(x, y)))}Z`).join('');
 }
 
 /** The lines at a level, which end at the edge of the grid. */
-export function isolines(plane: Slice, level: number): Line[] {
+export function isolines(plane: PlacedSlice, level: number): Line[] {
   const lines: Line[] = [];
-  for (const { line, border } of rings(plane, level)) {
+  const { width, height } = plane;
+  for (const ring of ringsOf(plane, level)) {
     let current: Line = [];
-    for (let i = 0; i < line.length; i++) {
-      if (border[i]) {
+    for (const [x, y] of ring) {
+      if (x < 0 || y < 0 || x > width - 1 || y > height - 1) {
         if (current.length > 1) lines.push(current);
         current = [];
       } else {
-        current.push(line[i]);
+        current.push(plane.place(x, y));
       }
     }
     if (current.length > 1) lines.push(current);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The parts of a page that show a dose: histograms, sections and the 3D view.
 import { build } from '../page_part';
-import { unfoldForPaper } from '../paper';
 import type { DoseData } from './data';
 import { buildDifferenceKey } from './difference';
 import { buildDvhChart } from './dvh_chart';
@@ -22,7 +21,6 @@ export interface More {
 
 export function buildDosePage(data: DoseData, more: More = {}): void {
   document.documentElement.classList.add('with-script');
-  unfoldForPaper();
   build('dvh-plot', (box) => buildDvhChart(data, box, document.getElementById('dvh-legend') as HTMLElement, more.planned, more.found));
   build('iso-key', (box) => buildLevelKey(data, box, more.keys));
   build('section-pictures', (box) => box.append(...PLANES.map((plane) => buildSection(data, plane, more.marks))));

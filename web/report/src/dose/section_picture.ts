@@ -2,6 +2,7 @@
 // One section: isodose lines, outlines of structures and sources near the plane, as an SVG picture in millimetres.
 import { element } from '../../../shared/dom';
 import { numberText } from '../../../shared/numbers';
+import { add, svg as makeSvg } from '../../../shared/svg';
 import { contourPath, contourPlanes, isAt, nearestPlane, snapped, type ContourPlane } from './contour_planes';
 import type { DoseData, Level } from './data';
 import { differenceImage } from './difference';
@@ -12,18 +13,9 @@ import { inPicture, type Plane } from './planes';
 export const NEAR_MM = 2.5;
 const EDGE = 7;          // [mm] room around the picture for the scale
 const TEXT = 3;          // [mm] height of letters
-const SVG = 'http://www.w3.org/2000/svg';
 
 /** Draws more over the sources of a section at a height [mm] along the plane's normal. */
 export type MoreMarks = (inside: SVGElement, plane: Plane, height: number) => void;
-
-export function add(parent: SVGElement, tag: string, attributes: Record<string, string | number>, text = ''): SVGElement {
-  const node = document.createElementNS(SVG, tag);
-  for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, String(value));
-  if (text) node.textContent = text;
-  parent.append(node);
-  return node;
-}
 
 /** The window of the picture [mm]. */
 interface Frame {
@@ -150,10 +142,7 @@ export function buildSection(data: DoseData, plane: Plane, more: MoreMarks = () 
   const caption = element('figcaption');
   const frame = frameOf(data, plane);
   const { left, top, size } = frame;
-  const svg = document.createElementNS(SVG, 'svg');
-  svg.setAttribute('viewBox', `${left - EDGE} ${top - 1} ${size + EDGE + 1} ${size + EDGE}`);
-  svg.setAttribute('role', 'img');
-  svg.setAttribute('font-size', String(TEXT));
+  const svg = makeSvg('svg', { viewBox: `${left - EDGE} ${top - 1} ${size + EDGE + 1} ${size + EDGE}`, role: 'img', 'font-size': TEXT });
   const slider = element('input');
   slider.type = 'range';
   const middle = data.centre[plane.normal];

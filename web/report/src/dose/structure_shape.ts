@@ -10,7 +10,7 @@ export class StructureShape {
   readonly object: THREE.Object3D;
   readonly centre = new THREE.Vector3();  // [mm] LPS
   private readonly material: THREE.MeshStandardMaterial | THREE.PointsMaterial;
-  private readonly box: THREE.Box3;
+  readonly box: THREE.Box3;
 
   constructor(readonly structure: Structure) {
     const geometry = new THREE.BufferGeometry();
@@ -32,11 +32,6 @@ export class StructureShape {
     this.object.frustumCulled = false;
     this.opacity = !surface ? OPACITY.points : structure.background ? OPACITY.background : structure.region === 'prostate' ? OPACITY.target : OPACITY.other;
     this.visible = !structure.background;
-  }
-
-  /** Whether the bounding box of the other structure lies inside the one of this structure. */
-  holds(other: StructureShape): boolean {
-    return other !== this && this.box.containsBox(other.box) && !other.box.containsBox(this.box);
   }
 
   get opacity(): number {

@@ -1,71 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The 3D view of a plan with the controls of its appearance.
-import { button, element } from '../../../shared/dom';
-import { VIEWS } from '../../../shared/views';
-import { stillForPaper } from '../paper';
+import { element, switchOf } from '../../../shared/dom';
+import { regionRow } from '../../../shared/region_look';
+import { openStage } from '../stage_box';
 import type { DoseData } from './data';
 import { DoseStage } from './stage';
-import type { StructureShape } from './structure_shape';
-
-export function switchOf(text: string, on: boolean, color: string | null, set: (on: boolean) => void): HTMLElement {
-  const label = element('label');
-  const box = element('input');
-  box.type = 'checkbox';
-  box.checked = on;
-  box.addEventListener('change', () => set(box.checked));
-  label.append(box);
-  if (color) {
-    const swatch = element('span', 'swatch');
-    swatch.style.background = color;
-    label.append(swatch);
-  }
-  label.append(text);
-  return label;
-}
-
-function structureRow(shape: StructureShape, draw: () => void): HTMLElement {
-  const row = element('div', 'region');
-  const slider = element('input');
-  slider.type = 'range';
-  slider.min = '0';
-  slider.max = '1';
-  slider.step = '0.01';
-  slider.value = String(shape.opacity);
-  slider.setAttribute('aria-label', `Opacity of ${shape.structure.name}`);
-  slider.addEventListener('input', () => {
-    shape.opacity = slider.valueAsNumber;
-    draw();
-  });
-  row.append(switchOf(shape.structure.name, shape.visible, shape.structure.color, (on) => {
-    shape.visible = on;
-    draw();
-  }), slider);
-  return row;
-}
 
 /** @param more adds to the picture and returns the controls of what it added */
 export function buildDoseViewer(data: DoseData, root: HTMLElement, more?: (stage: DoseStage, picture: HTMLElement) => HTMLElement[]): void {
-  const picture = element('div', 'picture');
-  const canvas = element('div', 'canvas');
-  const bar = element('div', 'scale-bar');
-  picture.append(canvas, bar);
-  root.append(picture);
-  let stage: DoseStage;
-  try {
-    stage = new DoseStage(data, canvas, (mm, px) => {
-      bar.textContent = `${mm} mm`;
-      bar.style.width = `${(100 * px) / picture.clientWidth}%`;
-    });
-  } catch {
-    root.replaceChildren(element('p', 'note', 'This browser offers no WebGL, which the 3D view needs.'));
-    return;
-  }
-  stillForPaper(picture, () => stage.still());
+  const opened = openStage(root, (box, scaleBar) => new DoseStage(data, box, scaleBar), 'the 3D view needs.');
+  if (!opened) return;
+  const { stage, picture, views } = opened;
   const draw = () => stage.draw();
   const side = element('div', 'side');
-  const views = element('div', 'views');
-  for (const view of VIEWS) views.append(button(view.name === 'Oblique' ? 'Reset view' : view.name, () => stage.look(view.from)));
-  side.append(element('h3', '', 'Shown'), ...stage.structures.map((s) => structureRow(s, draw)),
+  side.append(element('h3', '', 'Shown'), ...stage.structures.map((shape) => regionRow(shape, shape.structure.name, shape.structure.color, draw)),
     switchOf(data.sources.temporary ? 'Dwell positions' : 'Seeds', true, '#3b4452', (on) => {
       stage.sources.visible = on;
       draw();

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The arrows of the seeds' errors in the 3D view, the seeds found on images, and needles that are in the tissue
 // together, with their controls.
-import { element } from '../../../shared/dom';
+import { element, switchOf } from '../../../shared/dom';
 import type { DoseStage } from '../dose/stage';
-import { switchOf } from '../dose/viewer';
 import { capital, type ImplantData } from './data';
 import { ErrorArrows } from './error_arrows';
 import { FOUND_COLOR, foundMarks } from './found_marks';

@@ -10,9 +10,35 @@ export interface Seed {
   third: number;           // number in `thirds`
 }
 
-export interface FoundSeed {
-  found_mm: Triple;       // LPS
-  number: number | null;  // that of its seed; null: it matches none
+/** The seeds found on images, as in summary.json (src/io/results/implant/found_json.cpp). */
+export interface Found {
+  common_shift_mm: Triple;
+  as_found: { parts: ErrorPart[] };
+  without_shift: { parts: ErrorPart[] };
+  agreement: Record<'x' | 'y' | 'z' | 'all', { correlation: number | null }>;
+  seeds: { number: number; needle: string; planned_mm: Triple; rest_mm: Triple; found_mm: Triple; ambiguous: boolean }[];
+  not_dropped: { found_mm: Triple }[];
+}
+
+export interface ErrorPart {
+  cause: string;
+  mm2: number;
+  percent: number;
+}
+
+/** The implant under one of several choices. */
+export interface Choice {
+  name: string;
+  distances_mm: number[];  // of the seeds from their planned places
+}
+
+/** The dose while the gland swells, over the days since the implant. */
+export interface Oedema {
+  days: number[];
+  swelling_percent: number[][];  // (3 axes × days)
+  D90_Gy: number[];
+  D90_without_swelling_Gy: number[];
+  in_the_end_Gy: Triple;         // D90, D90 without swelling, their difference
 }
 
 /** A needle that is in the tissue together with others. */
@@ -39,7 +65,11 @@ export interface ImplantData {
   nouns: Nouns;
   planned_percent: number[][];  // (structures × doses) histograms of the plan, at the doses of the delivered ones
   found_percent?: number[][];   // those of the seeds that were found on images, where there are any
-  found?: FoundSeed[];
+  found?: Found;
+  error: Record<'x_mm' | 'y_mm' | 'z_mm', { mean: number }> & { mean_mm: number; p95_mm: number };
+  causes: { name: string; mean_mm: number; mean_xyz_mm: Triple }[];  // those that moved a seed
+  choices: Record<string, Choice[]>;  // by the id of their section
+  oedema: Oedema | null;
   thirds: { name: string; color: string }[];
   seeds: Seed[];
   needle_diameter_mm: number;

@@ -2,7 +2,8 @@
 // The errors of seeds in a section: an open mark at the planned place, joined to the seed at rest by a line. Seeds that
 // were found on images are crosses.
 import { inPicture } from '../dose/planes';
-import { add, NEAR_MM, type MoreMarks } from '../dose/section_picture';
+import { add } from '../../../shared/svg';
+import { NEAR_MM, type MoreMarks } from '../dose/section_picture';
 import { capital, type ImplantData } from './data';
 
 const RADIUS = 1.05;  // [mm] of an open mark, so that a seed seen from its end lies inside
@@ -16,7 +17,7 @@ export const FOUND_KEY = '<svg width="14" height="14" viewBox="0 0 3.5 3.5" aria
 const ARM = 0.95;  // [mm] half the width of a cross
 
 /** Draws the errors of the seeds that are planned, or rest, near the plane, and the found ones near it. */
-export function errorMarks({ nouns, seeds, found = [] }: ImplantData): MoreMarks {
+export function errorMarks({ nouns, seeds, found }: ImplantData): MoreMarks {
   return (inside, plane, height) => {
     const g = add(inside, 'g', { class: 'errors' });
     const isNear = (x: ArrayLike<number>) => Math.abs(x[plane.normal] - height) <= NEAR_MM;
@@ -35,7 +36,8 @@ export function errorMarks({ nouns, seeds, found = [] }: ImplantData): MoreMarks
       }
       for (const kind of ['rim', 'line']) add(mark, 'circle', { cx: x.toFixed(2), cy: y.toFixed(2), r: RADIUS, class: kind });
     }
-    for (const { number, found_mm: place } of found) {
+    const places = found ? [...found.seeds, ...found.not_dropped.map((one) => ({ ...one, number: null }))] : [];
+    for (const { number, found_mm: place } of places) {
       if (!isNear(place)) continue;
       const [x, y] = inPicture(plane, place);
       const mark = add(g, 'g', { class: 'found' });

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page of stylet implant: histograms of both doses, sections and the 3D view with the errors of the seeds. The
-// program writes the data in src/io/results/dose/page_data.cpp and src/io/results/implant/implant_data.cpp, and the
-// pictures of the errors in src/io/results/implant.
+// program writes the data in src/io/results/dose/page_data.cpp and src/io/results/implant/implant_data.cpp.
 import 'uplot/dist/uPlot.min.css';
 import '../style.css';
 import '../verdict.css';
@@ -10,6 +9,7 @@ import './style.css';
 import { decode } from '../dose/data';
 import { buildDosePage } from '../dose/page';
 import { addArrows } from './arrow_controls';
+import { buildImplantCharts } from './charts';
 import { decodeImplant } from './data';
 import { ERROR_KEY, errorMarks, FOUND_KEY, PLANNED_KEY } from './error_marks';
 
@@ -26,3 +26,4 @@ buildDosePage(decode(text('dose-data')), {
   marks: errorMarks(implant),
   inSpace: (stage, picture) => addArrows(implant, stage, picture),
 });
+buildImplantCharts(implant);

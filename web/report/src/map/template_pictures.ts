@@ -2,13 +2,7 @@
 // Pictures of the guide template, seen from the patient's feet: one for each quantity of the map, with its numbers.
 import { element } from '../../../shared/dom';
 import { colorsOf, isKnown, MEASURES, scaleEnd, scaleGradient, scaleWords, shortText, tellOf, type HoleMap, type Measure } from '../../../shared/hole_map';
-import { svg } from '../../../shared/svg';
-
-function title(text: string): SVGTitleElement {
-  const t = svg('title', {});
-  t.textContent = text;
-  return t;
-}
+import { add, svg } from '../../../shared/svg';
 
 function draw(map: HoleMap, measure: Measure): SVGSVGElement {
   const { columns, rows } = map;
@@ -18,11 +12,7 @@ function draw(map: HoleMap, measure: Measure): SVGSVGElement {
   });
   const x = (i: number) => i + 1.5;
   const y = (j: number) => rows.length - 1 - j + 0.6;
-  const label = (text: string, at: [number, number]) => {
-    const t = svg('text', { x: at[0], y: at[1] + 0.2, class: 'name' });
-    t.textContent = text;
-    picture.append(t);
-  };
+  const label = (text: string, [left, down]: [number, number]) => add(picture, 'text', { x: left, y: down + 0.2, class: 'name' }, text);
   columns.forEach((name, i) => label(name, [x(i), rows.length + 0.45]));
   rows.forEach((name, j) => label(name, [0.5, y(j)]));
   const end = scaleEnd(measure, map);
@@ -30,21 +20,17 @@ function draw(map: HoleMap, measure: Measure): SVGSVGElement {
   rows.forEach((row, j) => columns.forEach((column, i) => {
     const mapped = byName.get(column + row);
     if (!mapped) {
-      const dot = svg('circle', { cx: x(i), cy: y(j), r: 0.09, class: 'missing' });
-      dot.append(title(`Hole ${column + row}: the straight path from this hole misses the gland`));
-      picture.append(dot);
+      const dot = add(picture, 'circle', { cx: x(i), cy: y(j), r: 0.09, class: 'missing' });
+      add(dot, 'title', {}, `Hole ${column + row}: the straight path from this hole misses the gland`);
       return;
     }
     const mm = measure.of(mapped);
-    const hole = svg('g', { transform: `translate(${x(i)} ${y(j)})` });
+    const hole = add(picture, 'g', { transform: `translate(${x(i)} ${y(j)})` });
     const colors = mm === null ? { fill: 'none', text: '' } : colorsOf(measure, end, mm);
-    hole.append(svg('circle', { r: 0.46, fill: colors.fill, class: mm === null ? 'unknown' : 'known' }));
-    if (mapped.hole === map.planned) hole.append(svg('rect', { x: -0.5, y: -0.5, width: 1, height: 1, class: 'planned' }));
-    const number = svg('text', { y: 0.13, fill: colors.text, class: 'value' });
-    number.textContent = mm === null ? '–' : shortText(mm);
-    if (mm === null) number.setAttribute('class', 'value unknown');
-    hole.append(number, title(tellOf(mapped)));
-    picture.append(hole);
+    add(hole, 'circle', { r: 0.46, fill: colors.fill, class: mm === null ? 'unknown' : 'known' });
+    if (mapped.hole === map.planned) add(hole, 'rect', { x: -0.5, y: -0.5, width: 1, height: 1, class: 'planned' });
+    add(hole, 'text', { y: 0.13, fill: colors.text, class: mm === null ? 'value unknown' : 'value' }, mm === null ? '–' : shortText(mm));
+    add(hole, 'title', {}, tellOf(mapped));
   }));
   return picture;
 }

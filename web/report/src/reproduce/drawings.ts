@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Figure 2 as SVG: contours slice by slice, the organ's surface, and needle segments. The solids can be turned.
 import { numberText } from '../../../shared/numbers';
+import { add, svg } from '../../../shared/svg';
 import { BLUE, VERMILION } from './colors';
 import type { Figure2, Point, Segment } from './data';
-
-const SVG = 'http://www.w3.org/2000/svg';
-
-function svg(tag: string, attributes: Record<string, string | number>, parent?: Element): SVGElement {
-  const element = document.createElementNS(SVG, tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
-  parent?.append(element);
-  return element;
-}
 
 /**
  * Draws each contour in a picture of its own, from the apex to the base, seen from the feet: the patient's left is
@@ -32,13 +24,13 @@ export function drawContours(box: HTMLElement, figure: Figure2): void {
       role: 'img', 'aria-label': `Contour at z = ${numberText(points[0][2], 0)} mm`,
     });
     const closed = (chosen: Point[]) => chosen.map((p) => `${p[0].toFixed(2)},${p[1].toFixed(2)}`).join(' ');
-    svg('polygon', { points: closed(points), fill: '#f4f5f7', stroke: 'none' }, view);
-    svg('polygon', { points: closed(points.filter((_, i) => kept[i])), fill: 'none', stroke: BLUE, 'stroke-width': 0.35 }, view);
+    add(view, 'polygon', { points: closed(points), fill: '#f4f5f7', stroke: 'none' });
+    add(view, 'polygon', { points: closed(points.filter((_, i) => kept[i])), fill: 'none', stroke: BLUE, 'stroke-width': 0.35 });
     points.forEach((p, i) => {
-      if (!kept[i]) svg('circle', { cx: p[0], cy: p[1], r: 0.5, fill: '#fff', stroke: VERMILION, 'stroke-width': 0.28 }, view);
+      if (!kept[i]) add(view, 'circle', { cx: p[0], cy: p[1], r: 0.5, fill: '#fff', stroke: VERMILION, 'stroke-width': 0.28 });
     });
     points.forEach((p, i) => {
-      if (kept[i]) svg('circle', { cx: p[0], cy: p[1], r: 0.8, fill: BLUE }, view);
+      if (kept[i]) add(view, 'circle', { cx: p[0], cy: p[1], r: 0.8, fill: BLUE });
     });
     const caption = document.createElement('span');
     caption.textContent = `z = ${numberText(points[0][2], 0)} mm: ${kept.filter((k) => k).length} of ${points.length}`;
@@ -98,16 +90,16 @@ function drawSolid(box: HTMLElement, solid: Solid, label: string): void {
     for (const { corners, n } of faces) {
       const shade = 0.55 + 0.45 * Math.max(0, dot(n, light));
       const fill = `rgb(${solid.color.map((c) => Math.round(c * shade)).join(',')})`;
-      svg('polygon', {
+      add(view, 'polygon', {
         points: corners.map((p) => `${p[0].toFixed(3)},${(-p[1]).toFixed(3)}`).join(' '),
         fill, 'fill-opacity': solid.opacity, stroke: '#23262b', 'stroke-opacity': 0.55, 'stroke-width': radius / 220, 'stroke-linejoin': 'round',
-      }, view);
+      });
     }
     for (const [a, b] of solid.edges) {
-      svg('line', { x1: seen[a][0], y1: -seen[a][1], x2: seen[b][0], y2: -seen[b][1], stroke: BLUE, 'stroke-width': radius / 110 }, view);
+      add(view, 'line', { x1: seen[a][0], y1: -seen[a][1], x2: seen[b][0], y2: -seen[b][1], stroke: BLUE, 'stroke-width': radius / 110 });
     }
     if (solid.edges.length > 0) {
-      for (const p of seen) svg('circle', { cx: p[0], cy: -p[1], r: radius / 45, fill: BLUE, stroke: '#fff', 'stroke-width': radius / 260 }, view);
+      for (const p of seen) add(view, 'circle', { cx: p[0], cy: -p[1], r: radius / 45, fill: BLUE, stroke: '#fff', 'stroke-width': radius / 260 });
     }
   };
   let held: [number, number] | null = null;

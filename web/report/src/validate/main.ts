@@ -4,7 +4,10 @@ import 'uplot/dist/uPlot.min.css';
 import '../style.css';
 import '../verdict.css';
 import './style.css';
-import { buildLinePlot, type Line } from '../plots/line_plot';
+import { LEVEL } from '../plots/chart';
+import { buildLines } from '../plots/lines';
+import { addLegend, type Series } from '../plots/series';
+import { element } from '../../../shared/dom';
 import { numberText } from '../../../shared/numbers';
 import { INK } from '../../../shared/plot_style';
 import { build } from '../page_part';
@@ -40,58 +43,26 @@ function text(value: number): string {
   return numberText(Number(value.toPrecision(3)));
 }
 
-function linesOf(plot: Plot): Line[] {
+function seriesOf(plot: Plot): Series[] {
   let ours = 0;
-  return plot.curves.map((curve) => {
-    const reference = curve.kind !== 'ours';
-    return {
-      label: curve.label,
-      color: reference ? INK : OURS[ours++ % OURS.length],
-      x: curve.x,
-      values: curve.y,
-      dashed: curve.kind === 'reference',
-      bare: curve.kind === 'points',
-      marks: curve.kind === 'points' || (curve.kind === 'ours' && curve.x.length <= 12),
-      width: reference ? 1.5 : 2,
-    };
+  return plot.curves.map(({ label, kind, x, y }): Series => {
+    if (kind === 'points') return { label, x, y, color: INK, shape: 'none', mark: 'disc', small: true };
+    if (kind === 'reference') return { label, x, y, color: INK, width: 1.5, dashes: [6, 4] };
+    return { label, x, y, color: OURS[ours++ % OURS.length], mark: x.length <= 12 ? 'disc' : undefined };
   });
-}
-
-function legend(lines: Line[], plot: Plot): HTMLElement {
-  const list = document.createElement('div');
-  list.className = 'key';
-  for (const line of lines) {
-    const item = document.createElement('span');
-    const mark = document.createElement('i');
-    mark.className = line.bare ? 'dot' : line.dashed ? 'dash' : 'line';
-    mark.style.setProperty('--mark', line.color);
-    item.append(mark, line.label);
-    list.append(item);
-  }
-  if (plot.band) {
-    const item = document.createElement('span');
-    const mark = document.createElement('i');
-    mark.className = 'area';
-    item.append(mark, 'accepted');
-    list.append(item);
-  }
-  return list;
 }
 
 function picture(box: HTMLElement, plot: Plot): void {
-  const lines = linesOf(plot);
-  buildLinePlot(box, {
-    xLabel: plot.x_label,
-    yLabel: plot.y_label,
-    logX: plot.log_x ? true : undefined,
-    logY: plot.log_y,
+  const series = seriesOf(plot);
+  buildLines(box, {
+    x: { label: plot.x_label, log: plot.log_x, text },
+    y: { label: plot.y_label, log: plot.log_y, text },
     level: plot.band ?? undefined,
-    unnamed: true,
-    text,
-    xText: text,
-    lines,
+    series,
   });
-  box.after(legend(lines, plot));
+  const legend = element('div', 'legend');
+  addLegend(legend, [...series, ...(plot.band ? [{ label: 'accepted', color: LEVEL, shape: 'bars' as const }] : [])]);
+  box.after(legend);
 }
 
 document.documentElement.classList.add('with-script');

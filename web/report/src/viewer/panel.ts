@@ -2,17 +2,16 @@
 // The interactive view: stage, time slider, and controls of its appearance.
 import type { ReportData } from '../data';
 import type { Moment } from '../moment';
-import { button, element } from '../../../shared/dom';
+import { button, element, switchOf } from '../../../shared/dom';
 import { colorBar, contactKey, scaleMarks } from '../../../shared/keys';
-import { regionRow } from '../../../shared/region_look';
-import { VIEWS } from '../../../shared/views';
-import { stillForPaper } from '../paper';
+import { regionRow, rowName } from '../../../shared/region_look';
+import { openStage } from '../stage_box';
 import { Stage } from './stage';
 
 function regionList(stage: Stage): HTMLElement {
   const list = element('div', 'regions');
   for (const mesh of stage.regions) {
-    list.append(regionRow(mesh, () => {
+    list.append(regionRow(mesh, rowName(mesh.region), mesh.region.color, () => {
       mesh.applyLook();
       stage.draw();
     }));
@@ -22,16 +21,12 @@ function regionList(stage: Stage): HTMLElement {
 
 function contactList(stage: Stage): HTMLElement {
   const row = element('div', 'contacts');
-  const label = element('label');
-  const box = element('input');
-  box.type = 'checkbox';
-  box.checked = true;
-  box.addEventListener('change', () => {
-    stage.contacts.object.visible = box.checked;
+  const { object } = stage.contacts;
+  const shown = switchOf('Contact points', true, null, (on) => {
+    object.visible = on;
     stage.draw();
   });
-  label.append(box, 'Contact points');
-  row.append(label, contactKey());
+  row.append(shown, contactKey());
   return row;
 }
 
@@ -113,30 +108,16 @@ function timeControls(moment: Moment): HTMLElement {
 }
 
 export function buildViewer(data: ReportData, moment: Moment, root: HTMLElement): void {
-  const picture = element('div', 'picture');
-  const canvas = element('div', 'canvas');
-  const bar = element('div', 'scale-bar');
+  const opened = openStage(root, (box, scaleBar) => new Stage(data, box, scaleBar),
+    'the interactive view needs. The pictures below show the same scene before, during and after the insertion.');
+  if (!opened) return;
+  const { stage, picture, views } = opened;
   const note = element('div', 'exaggeration');
   note.hidden = true;
-  picture.append(canvas, bar, note);
-  root.append(picture);
-  let stage: Stage;
-  try {
-    stage = new Stage(data, canvas, (mm, px) => {
-      bar.textContent = `${mm} mm`;
-      bar.style.width = `${(100 * px) / picture.clientWidth}%`;
-    });
-  } catch {
-    root.replaceChildren(element('p', 'note',
-      'This browser offers no WebGL, which the interactive view needs. The pictures below show the same scene before, during and after the insertion.'));
-    return;
-  }
-  stillForPaper(picture, () => stage.still());
+  picture.append(note);
   const marks = scaleMarks(data.displacementMax);
   const most = marks[marks.length - 1];
   const side = element('div', 'side');
-  const views = element('div', 'views');
-  for (const view of VIEWS) views.append(button(view.name === 'Oblique' ? 'Reset view' : view.name, () => stage.look(view.from)));
   const scale = colorBar(marks);
   let times = 1;
   const update = () => stage.show(moment.frame, most, times);

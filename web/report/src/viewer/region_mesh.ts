@@ -16,7 +16,7 @@ export class RegionMesh implements RegionLook {
   private readonly position: Float32Array;
   private readonly color: Float32Array;
 
-  private readonly box = new THREE.Box3();  // of the undeformed surface
+  readonly box = new THREE.Box3();  // of the undeformed surface
 
   constructor(private readonly data: ReportData, readonly region: Region) {
     const local = new Map<number, number>();
@@ -43,11 +43,6 @@ export class RegionMesh implements RegionLook {
     this.visible = true;
     this.opacity = region.opacity;
     this.applyLook();
-  }
-
-  /** Whether the bounding box of the other region lies inside the bounding box of this region. */
-  holds(other: RegionMesh): boolean {
-    return other !== this && this.box.containsBox(other.box);
   }
 
   applyLook(): void {
