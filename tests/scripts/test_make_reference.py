@@ -20,6 +20,7 @@ class Reference(unittest.TestCase):
             options = (Path(name) / "options.md").read_text(encoding="utf-8")
             library = (Path(name) / "library.md").read_text(encoding="utf-8")
             self.assertTrue((Path(name) / "html/index.html").is_file())
+            self.assertIn("\nhalf-life\n", (Path(name) / "plan_rules.md").read_text(encoding="utf-8"))
         commands = {f.stem.removeprefix("command_") for f in (ROOT / "apps/cli").glob("command_*.cpp")}
         self.assertEqual(commands | {"stylet"}, set(re.findall(r"^## (\w+)$", options, re.M)))
         include = ROOT / "include"
