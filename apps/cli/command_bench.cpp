@@ -82,16 +82,17 @@ Command add_bench_command(CLI::App& program) {
          "WHAT", arguments->what,
          "remesh: time of one change of the mesh against the number of nodes, by the default's two rules, by "
          "Woodbury, by boundary condition switches and by an inverse from scratch; scale: time of a step against the "
-         "number of nodes and contacts; together: time of a step while other needles rest in the tissue; pictures: time "
+         "number of nodes and contacts; together: time of a step while other needles rest in the tissue; pictures: "
+         "time "
          "of a picture of the deformed patient, of each kind; dose: time of the dose rates of 100 seeds at a million "
          "points, by the formula and by a table")
       ->required()
       ->check(one_of({"remesh", "scale", "together", "pictures", "dose"}));
-  app->add_option("--nodes", arguments->nodes,
-                  fmt::format("Nodes of the largest mesh: remesh 125 to 4096 (default {}), scale 570 or more (default "
-                              "{}), pictures 3000 or more (default {})",
-                              kRemeshNodes, measure::ScaleBenchOptions{}.largest,
-                              measure::PicturesBenchOptions{}.largest))
+  app->add_option(
+         "--nodes", arguments->nodes,
+         fmt::format("Nodes of the largest mesh: remesh 125 to 4096 (default {}), scale 570 or more (default "
+                     "{}), pictures 3000 or more (default {})",
+                     kRemeshNodes, measure::ScaleBenchOptions{}.largest, measure::PicturesBenchOptions{}.largest))
       ->type_name("N")
       ->check(whole_number_between(1, 1000000));
   app->add_option("--contacts", arguments->contacts,

@@ -23,8 +23,8 @@ constexpr double kShare = 0.85;
 
 /// Simulates one insertion: in, back and forth, and out.
 /// @param place DrivenStep::place of the first step
-void drive(Simulation& simulation, long least, long place, std::vector<DrivenStep>& steps,
-           const Progress& progress, const FixedWork* fixed) {
+void drive(Simulation& simulation, long least, long place, std::vector<DrivenStep>& steps, const Progress& progress,
+           const FixedWork* fixed) {
   const PlannedInsertion& plan = simulation.model().insertions().front();
   const Pose first = plan.motion.at(0.0);
   simulation.place(first, plan.entry, plan.direction);
@@ -89,8 +89,8 @@ Scenario driven_scenario(int contacts) {
   return scenario;
 }
 
-std::vector<DrivenStep> drive_needle(const std::shared_ptr<const Model>& model, long least,
-                                     const Progress& progress, const FixedWork* fixed) {
+std::vector<DrivenStep> drive_needle(const std::shared_ptr<const Model>& model, long least, const Progress& progress,
+                                     const FixedWork* fixed) {
   std::vector<DrivenStep> steps;
   std::unique_ptr<Simulation> simulation;
   for (int times = 0; times == 0 || static_cast<long>(steps.size()) < least; ++times) {

@@ -36,8 +36,8 @@ struct DrivenStep {
 /// Simulates the insertion and times its steps.
 /// @param least least number of steps; the insertion is repeated, in turn with the same needle and a new one
 /// @param fixed run and timed after each step; may be null
-std::vector<DrivenStep> drive_needle(const std::shared_ptr<const Model>& model, long least,
-                                     const Progress& progress, const FixedWork* fixed = nullptr);
+std::vector<DrivenStep> drive_needle(const std::shared_ptr<const Model>& model, long least, const Progress& progress,
+                                     const FixedWork* fixed = nullptr);
 
 /// Indices of the steps with at least 85 % of the largest number of contacts.
 std::vector<std::size_t> full_steps(const std::vector<DrivenStep>& steps);

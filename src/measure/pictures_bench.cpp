@@ -65,7 +65,8 @@ class Photographer {
       const double turn = 2.0 * std::numbers::pi * k / steps;
       section_us.push_back(1e6 * cpu_seconds([&] {
                              (*field)->set(forces, load);
-                             slicer.cut(simulation.last_step().tip_mm, Eigen::AngleAxisd(turn, plan.direction) * across);
+                             slicer.cut(simulation.last_step().tip_mm,
+                                        Eigen::AngleAxisd(turn, plan.direction) * across);
                              auto shown = u.leftCols(static_cast<Eigen::Index>(slicer.nodes().size()));
                              (*field)->displacement(slicer.nodes(), load, shown);
                              slicer.positions(shown, x.leftCols(static_cast<Eigen::Index>(slicer.vertices().size())));

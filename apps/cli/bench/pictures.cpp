@@ -28,7 +28,8 @@ Result<> bench_pictures_command(const BenchArguments& arguments, Console& consol
   json["machine"] = machine_json();
   console.say(
       "Processor time of a picture of the deformed demo patient, of 60 of each kind, in one thread.\n"
-      "Surfaces: all surfaces with the needle's near field. Section: a slice of the patient. Both are computed from the "
+      "Surfaces: all surfaces with the needle's near field. Section: a slice of the patient. Both are computed from "
+      "the "
       "forces of an insertion with 40 contacts.\n"
       "Ultrasound and X-ray: a picture with a needle and 20 seeds. Probe: the forces of an ultrasound probe that "
       "presses.\n"

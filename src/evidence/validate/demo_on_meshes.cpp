@@ -68,8 +68,7 @@ Result<std::vector<DemoOnMesh>> demo_on_meshes(Index largest, const Progress& pr
       if (!row) return row.error();
       rows.push_back(std::move(*row));
       const ForceCurve& reference = rows[finest].curve;
-      rows.back().rms_vs_finest_percent =
-          100.0 * rms_difference_N(rows.back().curve, reference) / reference.peak_N();
+      rows.back().rms_vs_finest_percent = 100.0 * rms_difference_N(rows.back().curve, reference) / reference.peak_N();
     }
   }
   return rows;

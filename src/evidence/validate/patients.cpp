@@ -28,8 +28,7 @@ Result<TetMesh> Patients::mesh(Context& context, PatientCase patient) {
   return *mask_;
 }
 
-Result<std::shared_ptr<const RecordedRun>> Patients::run(Context& context, PatientCase patient,
-                                                                  const PatientRun& how) {
+Result<std::shared_ptr<const RecordedRun>> Patients::run(Context& context, PatientCase patient, const PatientRun& how) {
   auto& kept = runs_[{patient, how}];
   if (kept) return kept;
   Scenario scenario = measure::demo_scenario();

@@ -3,8 +3,8 @@
 
 #include "stylet/core/progress.hpp"
 #include "stylet/evidence/validate/demo_on_meshes.hpp"
-#include "stylet/measure/demo.hpp"
 #include "stylet/evidence/validate/recorded_run.hpp"
+#include "stylet/measure/demo.hpp"
 
 #include <filesystem>
 #include <memory>
