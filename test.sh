@@ -1,22 +1,33 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Installs what is missing, builds, runs every check and every test. Stops at the first step that fails.
-#   ./test.sh           everything
+#   ./test.sh           all checks and tests; the longest tests take turns (scripts/turn), as do the sanitizers' programs
+#   ./test.sh --all     the same with every test
 #   ./test.sh --quick   release build and unit tests only
 set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")"
 
 case "${1:-}" in
-  "") steps=(packages format module_order machine_paths documents build tests commands instrumented_build sanitizers threads lint) ;;
+  "" | --all)
+    steps=(packages format module_order machine_paths documents sizes build tests commands instrumented_build sanitizers
+           threads lint) ;;
   --quick) steps=(packages build unit_tests) ;;
-  *) echo "usage: ./test.sh [--quick]" >&2; exit 2 ;;
+  *) echo "usage: ./test.sh [--all | --quick]" >&2; exit 2 ;;
 esac
+all=
+if [ "${1:-}" = --all ]; then all=yes; fi
+export STYLET_CACHE=$PWD/build/kept  # meshes that many tests need
 
 # run_tests PRESET [CTEST OPTION…]: runs tests side by side and prints how long they took, label by label.
 run_tests() {
   local times=$PWD/build/test_times/$1.xml
+  local options=("${@:2}")
+  if [ -z "$all" ] && [ "$1" != threads ]; then
+    scripts/turn check "$1" || return
+    options+=(--exclude-regex "$(scripts/turn exclude "$1")")
+  fi
   mkdir -p build/test_times
-  ctest --preset "$1" "${@:2}" --output-junit "$times" || return
+  ctest --preset "$1" "${options[@]}" --output-junit "$times" || return
   scripts/test_times "$1" "$times"
 }
 
@@ -25,6 +36,7 @@ format()        { scripts/check_format; }
 module_order()  { scripts/check_module_order; }
 machine_paths() { scripts/check_machine_paths; }
 documents()     { scripts/check_documents; }
+sizes()         { scripts/class_sizes && scripts/lines; }
 build()         { scripts/build release; }
 commands()      { scripts/check_commands build/bin/stylet; }
 unit_tests()    { run_tests release --parallel "$(nproc)" --label-regex unit; }
@@ -35,7 +47,11 @@ lint()          { scripts/check_lint; }
 # The tests leave a processor idle now and then: the instrumented programs are compiled there meanwhile.
 compiling=
 tests() {
-  { nice -n 15 scripts/build sanitize && nice -n 15 scripts/build threads; } > build/instrumented_build.log 2>&1 &
+  {
+    nice -n 15 cmake --preset sanitize --log-level=NOTICE &&
+      nice -n 15 scripts/build sanitize $([ -n "$all" ] || scripts/turn targets sanitize 'unit|long') &&
+      nice -n 15 scripts/build threads
+  } > build/instrumented_build.log 2>&1 &
   compiling=$!
   run_tests release --parallel "$(nproc)"
 }
@@ -53,9 +69,10 @@ declare -A about=(
   [module_order]="modules include only what lies left of them"
   [machine_paths]="no path of one machine in the sources"
   [documents]="lines of documents, links, names of tests, and phrases that lack their noun"
+  [sizes]="members and lines of every class; lines by module"
   [build]="release build into build/"
   [unit_tests]="unit tests"
-  [tests]="all tests: unit, long, command line, browser, real data, slow, installed library"
+  [tests]="tests: unit, long, command line, browser, real data, slow, installed library"
   [commands]="every command that a document shows"
   [instrumented_build]="the rest of the builds with sanitizers, begun beside the tests"
   [sanitizers]="core to realtime under address and undefined-behaviour sanitizers, unit and long tests"

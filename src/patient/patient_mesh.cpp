@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/patient/patient_mesh.hpp"
 
+#include "kept_meshes.hpp"
 #include "stylet/core/nearest_name.hpp"
 #include "stylet/geom/quality.hpp"
 #include "stylet/geom/structure_names.hpp"
@@ -111,7 +112,7 @@ Result<MeshedAnatomy> model_of(const ContourSet& contours, const MeshOptions& op
   const Result<StructureChoice> choice = choose_structures(contours, options);
   if (!choice) return choice.error();
   if (Result<> known = check_regions(*choice, scenario); !known) return known.error();
-  return mesh_contours(contours, options, progress);
+  return mesh_once(contours, options, progress);
 }
 
 Result<MeshedAnatomy> model_of(const LabelImage& image, const MeshOptions& options, const Scenario& scenario,
@@ -119,7 +120,7 @@ Result<MeshedAnatomy> model_of(const LabelImage& image, const MeshOptions& optio
   const Result<StructureChoice> choice = choose_structures(image, options);
   if (!choice) return choice.error();
   if (Result<> known = check_regions(*choice, scenario); !known) return known.error();
-  return mesh_labels(image, options, progress);
+  return mesh_once(image, options, progress);
 }
 
 Result<MeshedAnatomy> model_of(const TetMesh& mesh, const MeshOptions& options, const Scenario& scenario,

@@ -4,7 +4,9 @@
 import csv
 import json
 import os
+import re
 import unittest
+from pathlib import Path
 
 from program import InFolder
 from readme import not_to_trust
@@ -54,10 +56,13 @@ class Validate(InFolder):
         self.assertEqual(missed, [name for name in rows if name in not_to_trust()],
                          "README.md, Not to be trusted yet: it names the rows that miss and no other")
 
-    def test_the_readme_names_rows_that_there_are_each_once(self):
+    def test_the_readme_and_the_trust_page_name_rows_that_there_are(self):
+        rows = {row["id"] for row in self.json_of("validate", "--list")["rows"]}
         named = not_to_trust()
         self.assertEqual(len(named), len(set(named)))
-        self.assertLessEqual(set(named), {row["id"] for row in self.json_of("validate", "--list")["rows"]})
+        self.assertLessEqual(set(named), rows)
+        page = (Path(__file__).resolve().parents[2] / "docs/trust.md").read_text(encoding="utf-8")
+        self.assertLessEqual(set(re.findall(r"<!-- (\w+)(?: from| to)? -->\s*-?\d", page)), rows)
 
     def test_only_measures_the_rows_named_and_says_what_was_skipped(self):
         done = self.succeed("validate", "-o", "out", "--only", *SOME)

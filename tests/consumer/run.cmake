@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Installs the library to a fresh folder, builds the project beside this file against it, runs it.
-# Takes: STYLET (the library's sources), BUILD (its build folder), SOURCE (this folder), WORK (a folder to use), GENERATOR, CXX.
+# Takes: BUILD (the library's build folder), SOURCE (this folder), WORK (a folder to use), GENERATOR, CXX.
 file(REMOVE_RECURSE ${WORK})
 
 function(run)
@@ -47,9 +47,3 @@ foreach(private evidence measure serve)
     message(FATAL_ERROR "headers of ${private} are installed, but not its library")
   endif()
 endforeach()
-
-# The same library as a part of another project: no tests, no programs, and no setting of that project changes.
-run(${CMAKE_COMMAND} -S ${SOURCE}/subproject -B ${WORK}/subproject -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${CXX}
-    -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_FLAGS_RELEASE=-O0 -D STYLET=${STYLET})  # quick to compile
-run(${CMAKE_COMMAND} --build ${WORK}/subproject)
-run(${WORK}/subproject/consumer)

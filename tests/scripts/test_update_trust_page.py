@@ -45,6 +45,12 @@ class TrustPage(unittest.TestCase):
         self.assertEqual(status, 1)
         self.assertIn("no row beam", said)
 
+    def test_of_a_part_the_rows_that_are_there_are_checked(self):
+        self.assertEqual(self.run_on(PAGE, "--check", "--part", rows=ROWS[1:])[0], 0)
+        self.assertEqual(self.run_on(PAGE, "--check", rows=ROWS[1:])[0], 1)
+        stale = PAGE.replace("0.06 %", "0.21 %")
+        self.assertEqual(self.run_on(stale, "--check", "--part", rows=ROWS[:1])[0], 1)
+
     def test_a_row_that_misses_and_is_not_named_is_named(self):
         status, said, _ = self.run_on(PAGE.replace("`gap` does", "None does"))
         self.assertEqual(status, 1)

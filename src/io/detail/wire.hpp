@@ -116,11 +116,12 @@ class WireWriter {
       for (T& value : values) put(value);
     }
   }
-  void put(std::map<int, std::string>& values) {
+  template <class Key, class T>
+  void put(std::map<Key, T>& values) {
     put_size(values.size());
     for (auto& [key, value] : values) {
-      int number = key;
-      put(number);
+      Key copy = key;
+      put(copy);
       put(value);
     }
   }
@@ -169,9 +170,10 @@ class WireReader {
       for (T& value : values) get(value);
     }
   }
-  void get(std::map<int, std::string>& values) {
+  template <class Key, class T>
+  void get(std::map<Key, T>& values) {
     for (std::size_t n = get_size(1); n > 0; --n) {
-      int key = 0;
+      Key key{};
       get(key);
       get(values[key]);
     }
