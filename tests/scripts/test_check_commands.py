@@ -97,8 +97,8 @@ class Commands(unittest.TestCase):
         self.assertIn("README.md:3: started and stopped", self.accepted(fenced("stylet serve scenarios/demo.toml")))
 
     def test_options_of_a_long_command_are_checked(self):
-        self.assertIn("README.md:3: options checked", self.accepted(fenced("stylet bench dose -o a")))
-        self.refused(fenced("stylet bench dose --nodes 3"),
+        self.assertIn("README.md:3: options checked", self.accepted(fenced("stylet bench step -o a")))
+        self.refused(fenced("stylet bench step --nodes 3"),
                      "README.md:3: exit status 2: check_commands: stylet bench has no option '--nodes'")
         self.refused(fenced("stylet bench stop"), "stylet bench has no 'stop'")
 
