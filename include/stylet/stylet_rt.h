@@ -51,7 +51,7 @@ extern "C" {
 /* The STYLET_RT_ABI_VERSION with which the library was built, to be compared with the header's. [real time] */
 STYLET_RT_API uint32_t stylet_rt_abi_version(void) STYLET_RT_NOEXCEPT;
 
-/* Version of Stylet, e.g. "0.1.0". [real time] */
+/* Version of Stylet, e.g. "0.2.0" or "0.2.0+1a2b3c4d" (with the commit). [real time] */
 STYLET_RT_API const char* stylet_rt_version(void) STYLET_RT_NOEXCEPT;
 
 /* ---- statuses ---------------------------------------------------------------------------------------------------- */

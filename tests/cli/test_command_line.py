@@ -5,14 +5,16 @@ import json
 import os
 import subprocess
 import unittest
+from pathlib import Path
 
 import samples
 from program import STYLET, InFolder, commands
 
 
 class CommandLine(InFolder):
-    def test_version_is_one_line(self):
-        self.assertRegex(self.succeed("--version").stdout, r"\Astylet \d+\.\d+\.\d+\n\Z")
+    def test_version_is_one_line_and_names_the_commit_of_a_clone(self):
+        commit = r"\+[0-9a-f]{8,}(\.modified)?" if (Path(__file__).parents[2] / ".git").exists() else ""
+        self.assertRegex(self.succeed("--version").stdout, rf"\Astylet \d+\.\d+\.\d+{commit}\n\Z")
 
     def test_every_command_has_help_and_the_common_options(self):
         self.assertTrue({"phantom", "mesh", "info"} <= set(commands()))

@@ -1,18 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """stylet dose with plans that contradict themselves, made from plans of our own: each is refused, or warned of on the
-terminal, in dose.json and on the page. With --table the cases are printed."""
+terminal, in dose.json and on the page."""
 import copy
 import json
 import math
 import subprocess
-import sys
-from pathlib import Path
+import unittest
 
-if "--table" not in sys.argv:
-    import unittest
-
-    from program import InFolder, page_text, run
+from program import InFolder, page_text, run
 
 
 def ball(radius, name="Prostate", at=(0, 0, 0)):
@@ -195,23 +191,6 @@ TARGET_CASES = [
     ("a target without volume", structures({"name": "Prostate", "contours": ball(15)["contours"][:1]}), "volume"),
 ]
 CONTROLS = [("seeds (JSON)", ldr), ("afterloader (JSON)", hdr)]
-
-
-def table():
-    """The cases as rows of Markdown."""
-    rows = [("JSON", name, rule) for name, _, _, _, rule in JSON_CASES]
-    rows += [("CSV", name, rule) for name, _, rule in CSV_CASES]
-    rows += [("DICOM", name, rule) for name, _, _, _, rule in DICOM_CASES]
-    return rows + [("structures", name, rule) for name, _, rule in TARGET_CASES]
-
-
-def table_text():
-    return "\n".join(f"| {kind} | {name} | {rule} |" for kind, name, rule in table())
-
-
-if "--table" in sys.argv:
-    print(table_text())
-    sys.exit(0)
 
 
 class ContradictoryPlans(InFolder):

@@ -44,6 +44,30 @@ class Documents(unittest.TestCase):
     def test_a_file_that_is_not_there_is_named(self):
         self.refused({"README.md": "# A\nSee `src/none.cpp`.\n"}, "README.md:2: there is no src/none.cpp")
 
+    def test_a_folder_that_a_module_does_not_have_is_named(self):
+        self.refused({"src/io/image/a.cpp": "", "tests/io/formats/b.py": "",
+                      "src/io/README.md": "# io\nSee `image/`, `a.cpp`, `formats/`, `c.cpp` and `io/mesh/`.\n"},
+                     "src/io/README.md:2: there is no formats/", "there is no c.cpp", "there is no io/mesh/", "3 problems")
+
+    def test_a_test_that_is_not_there_is_named(self):
+        self.refused({"tests/a.cpp": "TEST(Needle, bends) {}\n", "README.md": "# A\n`Needle.bends`, `Needle.b…`, `Rod.*`\n"},
+                     "README.md:2: there is no test Rod.*", "1 problems")
+
+    def test_a_thing_that_is_there_although_a_document_says_it_is_absent_is_named(self):
+        said = "# A\nPictures <!-- absent: stylet image --> and a probe <!-- absent: probe in src/io/*.cpp --> are absent.\n"
+        self.assertEqual(self.complaints({"README.md": said, "src/io/a.cpp": "", "src/io/README.md": "# io\n"})[0], 0)
+        self.refused({"README.md": said, "src/io/a.cpp": "int x;\nint probe;\n", "src/io/README.md": "# io\n",
+                      "build/docs/reference/options.md": "# O\n`stylet image`\n"},
+                     "README.md:2: stylet image is said to be absent, and build/docs/reference/options.md:2 has it",
+                     "README.md:2: probe is said to be absent, and src/io/a.cpp:2 has it")
+        self.refused({"README.md": said}, "there is no file src/io/*.cpp")
+
+    def test_an_absence_without_a_mark_is_named(self):
+        self.refused({"README.md": "# A\n\n- One.\n- Muscle is not modelled.\n"}, 'README.md:4: "is not modelled" needs a mark')
+
+    def test_a_line_that_begins_with_a_comment_is_named(self):
+        self.refused({"README.md": "# A\nIt is\n<!-- row -->3 mm.\n"}, "README.md:3: a line that begins with a comment")
+
     def test_a_module_without_its_readme_is_named(self):
         self.refused({"src/core/a.cpp": ""}, "src/core/README.md:1: a module says")
 

@@ -9,7 +9,7 @@ namespace stylet {
 /// The effort that a balance may take before it is broken off and flagged; the next balance continues from there. A
 /// step with up to 40 contacts takes at most about a millisecond, whatever happens in it; with more contacts it takes
 /// longer. Operations are counted instead of timed, so that a step is the same on every machine. The unit is about a
-/// microsecond on the machine of docs/realtime.md, for needles of rods; docs/theory/coupling.md §4 gives the counts.
+/// microsecond on the machine of docs/realtime.md, for needles of rods; docs/theory/balance.md gives the counts.
 ///
 /// With needles at rest only the numbers of iterations bound a balance: many of their contacts may begin or end to slip
 /// in one step, and balances that are broken off step after step lose the motion of the gland

@@ -17,7 +17,7 @@ namespace stylet {
 /// old, which does no harm: the tangent that it replaces belongs to a much older one.
 ///
 /// A needle under more load than it can bear by itself has no positive definite tangent. It is then lent springs at its
-/// contacts (docs/theory/coupling.md §4). So is each needle at rest, since the load that the hand has put on it stays.
+/// contacts (docs/theory/balance.md). So is each needle at rest, since the load that the hand has put on it stays.
 class NeedleTangent {
  public:
   /// All arguments outlive the tangent. @param system its needle's side is written @param rows loads on the needle

@@ -8,7 +8,7 @@ namespace stylet {
 
 /// Predicts the end of a sub-step: all quantities continue as in the last sub-steps, in proportion to the base's
 /// motion, by the parabola through the last three values. The prediction does not change the balance, but from it the
-/// solver has to find only third differences (docs/theory/coupling.md §4).
+/// solver has to find only third differences (docs/theory/balance.md).
 class Predictor {
  public:
   /// @param shape_size size of Needle::state()

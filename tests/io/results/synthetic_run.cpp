@@ -209,7 +209,7 @@ std::vector<Event> events() {
 
 RunInfo run_info() {
   RunInfo info;
-  info.version = "0.1.0";
+  info.version = "0.2.0";
   info.scenario_name = "synthetic patient, hole D4";
   info.scenario_text = "# made-up run for the tests\n[needle]\nlength_mm = 200.0\n";
   info.parameters = {
