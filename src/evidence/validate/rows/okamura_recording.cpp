@@ -118,7 +118,7 @@ Result<Finding> force_over_depth(Context& context) {
     return curve ? rms(*recording, *curve) : std::numeric_limits<double>::infinity();
   };
   const auto [best_log_kPa, best_rms] =
-      boost::math::tools::brent_find_minima(rms_at, std::log(kSoftest_kPa), std::log(kStiffest_kPa), 8);
+      boost::math::tools::brent_find_minima(rms_at, std::log(kSoftest_kPa), std::log(kStiffest_kPa), 12);
   const auto best = simulated(best_log_kPa);
   if (!best) return best.error();
   const double best_kPa = std::exp(best_log_kPa);
