@@ -7,6 +7,7 @@
 
 #include "stylet/dose/evaluate.hpp"
 #include "stylet/dose/fitting_sources.hpp"
+#include "stylet/dose/plan_rules.hpp"
 #include "stylet/io/dose_input.hpp"
 #include "stylet/io/dose_io.hpp"
 #include "stylet/io/dose_results.hpp"
@@ -19,6 +20,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <iostream>
 
 namespace stylet::cli {
 
@@ -265,6 +267,14 @@ Result<> run_dose(const DoseArguments& arguments, Console& console) {
   return console.write_json(Json::parse(dose_json(*e)));
 }
 
+[[noreturn]] void print_rules() {
+  for (const PlanRule& rule : plan_rules()) {
+    std::cout << fmt::format("\n{}\n  bound: {}\n  otherwise: {}\n  reason: {}\n", rule.name, rule.bound, rule.verdict,
+                             rule.reason);
+  }
+  throw CLI::Success();
+}
+
 }  // namespace
 
 Command add_dose_command(CLI::App& program) {
@@ -341,6 +351,8 @@ Command add_dose_command(CLI::App& program) {
   app->add_option("--grid", arguments->grid_mm, "Distance of the points of the dose grid in mm (default: 1)")
       ->type_name("MM")
       ->check(number_between(0.2, 10, "mm"));
+  app->add_flag_callback("--print-rules", print_rules, "Print the rules by which plans are judged, and nothing else")
+      ->trigger_on_parse();
   app->add_flag("--ignore-frame-of-reference", arguments->ignore_frame,
                 "Take plan and structures to have the same coordinates although their frames of reference differ");
   return {app, [arguments](Console& console) { return run_dose(*arguments, console); }};

@@ -5,7 +5,7 @@
 
 #include <span>
 
-/// Whether a dose grid from a file can be that of a plan. The bounds are those of docs/reference/plan_rules.md.
+/// Whether a dose grid from a file can be that of a plan. The bounds are those of docs/how_to/dose_of_a_plan.md.
 namespace stylet::dose {
 
 /// Checks what grid and plan say, and that the grid holds a part of the target.

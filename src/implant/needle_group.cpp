@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "needle_group.hpp"
 
+#include "core/clock.hpp"
 #include "dwell_positions.hpp"
 #include "needle_motion.hpp"
 #include "needle_recorder.hpp"
@@ -14,9 +15,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <ctime>
 #include <deque>
 #include <limits>
 #include <optional>
@@ -26,14 +25,6 @@ namespace stylet {
 namespace {
 
 constexpr int kGlandEvery = 8;  ///< steps between two looks at the gland
-
-double thread_cpu_s() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double wall_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 /// One needle on its way through its procedure, which may rest in between.
 class NeedleOnItsWay {
@@ -115,9 +106,9 @@ void NeedleOnItsWay::take_step(Simulation& simulation, TargetMotion* gland, cons
   NeedleHistory& needle = out_.needle;
   ++taken_;
   simulation.prepare();
-  const double before = thread_cpu_s();
+  const std::int64_t before = thread_cpu_ns();
   const Step& step = simulation.step(base, dt);
-  const double seconds = thread_cpu_s() - before;
+  const double seconds = 1e-9 * static_cast<double>(thread_cpu_ns() - before);
   needle.seconds += seconds;
   time_s_ += dt;
   ++needle.steps;
@@ -202,7 +193,7 @@ Result<GroupOutcome> simulate_group(const std::vector<PlannedNeedle>& staying,
   for (const PlannedNeedle& needle : all) scenario.insertions.push_back(needle.plan);
   scenario.procedure.stabilising.clear();  // they are among the insertions
   GroupOutcome out;
-  const double start = wall_s();
+  const std::int64_t start = monotonic_ns();
   auto compiled = Model::compile(
       scenario, mesh,
       fmt::format("{}, {} {}", where, needles.front().load->implant == Implant::temporary ? "catheter" : "needle",
@@ -215,7 +206,7 @@ Result<GroupOutcome> simulate_group(const std::vector<PlannedNeedle>& staying,
     if (!response) return response.error();
     gland.emplace(*std::move(response));
   }
-  out.compile_s = wall_s() - start;
+  out.compile_s = 1e-9 * static_cast<double>(monotonic_ns() - start);
 
   const FlushDenormals flush;  // as in run(), so that the results are equal
   TargetMotion* const gland_now = gland ? &*gland : nullptr;

@@ -6,7 +6,6 @@
 #include "stylet/sim/simulation.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace stylet::measure {
@@ -22,48 +21,10 @@ constexpr double kDeepest_mm = kDrivenDepth_mm + kCycles * kFurther_mm;
 /// Steps with less than this share of the largest number of contacts do not count as full.
 constexpr double kShare = 0.85;
 
-/// Measures the time spent in each phase, without the phases nested in it.
-class PhaseClock final : public PhaseObserver {
- public:
-  void start() {
-    us_.fill(0.0);
-    depth_ = 0;
-    stack_[0] = StepPhase::other;
-    last_ = Clock::now();
-  }
-  [[nodiscard]] const std::array<double, kStepPhases>& stop() {
-    book();
-    return us_;
-  }
-  void enter(StepPhase phase) noexcept override {
-    book();
-    if (depth_ + 1 < static_cast<int>(stack_.size())) stack_[static_cast<std::size_t>(++depth_)] = phase;
-  }
-  void leave() noexcept override {
-    book();
-    if (depth_ > 0) --depth_;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  void book() {
-    const Clock::time_point now = Clock::now();
-    us_[static_cast<std::size_t>(stack_[static_cast<std::size_t>(depth_)])] +=
-        std::chrono::duration<double, std::micro>(now - last_).count();
-    last_ = now;
-  }
-  std::array<double, kStepPhases> us_{};
-  std::array<StepPhase, 16> stack_{};
-  int depth_ = 0;
-  Clock::time_point last_;
-};
-
 /// Simulates one insertion: in, back and forth, and out.
 /// @param place DrivenStep::place of the first step
-void drive(Simulation& simulation, bool phases, long least, long place, std::vector<DrivenStep>& steps,
-           const Progress& progress, const FixedWork* fixed) {
-  PhaseClock clock;
-  simulation.observe_phases(phases ? &clock : nullptr);
+void drive(Simulation& simulation, long least, long place, std::vector<DrivenStep>& steps, const Progress& progress,
+           const FixedWork* fixed) {
   const PlannedInsertion& plan = simulation.model().insertions().front();
   const Pose first = plan.motion.at(0.0);
   simulation.place(first, plan.entry, plan.direction);
@@ -84,9 +45,7 @@ void drive(Simulation& simulation, bool phases, long least, long place, std::vec
     step.place = place++;
     const double wall = measure::wall_s();
     const double cpu = measure::thread_cpu_s();
-    if (phases) clock.start();
     simulation.step(base, kDrivenStep_s);
-    if (phases) step.phase_us = clock.stop();
     step.cpu_us = 1e6 * (measure::thread_cpu_s() - cpu);
     step.wall_us = 1e6 * (measure::wall_s() - wall);
     if (fixed != nullptr) step.fixed_us = fixed->run();
@@ -97,7 +56,6 @@ void drive(Simulation& simulation, bool phases, long least, long place, std::vec
     steps.push_back(step);
     if (steps.size() % 512 == 0) report(progress, "stepping", static_cast<double>(steps.size()) / wanted);
   }
-  simulation.observe_phases(nullptr);
 }
 
 }  // namespace
@@ -119,21 +77,6 @@ std::vector<double> driven_depths(double start_mm) {
   return result;
 }
 
-BaseMotion driven_motion(const PlannedInsertion& plan, double start_mm, double seconds) {
-  const std::vector<double> way = driven_depths(start_mm);
-  const Pose first = plan.motion.at(0.0);
-  std::vector<MotionSample> samples{{0.0, first}};
-  for (double time_s = 0.0; time_s < seconds;) {
-    for (const double depth : way) {
-      Pose base = first;
-      base.origin += (depth - start_mm) * plan.direction;
-      time_s += kDrivenStep_s;
-      samples.push_back({time_s, base});
-    }
-  }
-  return BaseMotion(std::move(samples));
-}
-
 int most_driven_contacts() { return 1 + static_cast<int>(kDeepest_mm / demo_scenario().needle.diameter_mm); }
 
 Scenario driven_scenario(int contacts) {
@@ -146,14 +89,14 @@ Scenario driven_scenario(int contacts) {
   return scenario;
 }
 
-std::vector<DrivenStep> drive_needle(const std::shared_ptr<const Model>& model, bool phases, long least,
-                                     const Progress& progress, const FixedWork* fixed) {
+std::vector<DrivenStep> drive_needle(const std::shared_ptr<const Model>& model, long least, const Progress& progress,
+                                     const FixedWork* fixed) {
   std::vector<DrivenStep> steps;
   std::unique_ptr<Simulation> simulation;
   for (int times = 0; times == 0 || static_cast<long>(steps.size()) < least; ++times) {
     const bool fresh = times % 2 == 0;
     if (fresh) simulation = std::make_unique<Simulation>(model);
-    drive(*simulation, phases, least, fresh ? 0 : steps.back().place + 1, steps, progress, fixed);
+    drive(*simulation, least, fresh ? 0 : steps.back().place + 1, steps, progress, fixed);
   }
   return steps;
 }

@@ -3,11 +3,9 @@
 
 #include "fixed_work.hpp"
 
-#include "stylet/coupling/step_phases.hpp"
 #include "stylet/measure/scale_bench.hpp"
 #include "stylet/sim/model.hpp"
 
-#include <array>
 #include <vector>
 
 namespace stylet::measure {
@@ -19,9 +17,6 @@ inline constexpr double kDrivenStep_s = 1e-3;
 
 /// Base depth [mm] after every step. @param start_mm base depth at the start
 std::vector<double> driven_depths(double start_mm);
-
-/// The same motion, repeated until `seconds` of simulated time have passed.
-BaseMotion driven_motion(const PlannedInsertion& plan, double start_mm, double seconds);
 
 /// The default scenario in firm tissue, with the spacing that gives `contacts` contacts. In the fat of the typical
 /// preset not all of 60 contacts are laid, and on coarse meshes contacts there overtake each other.
@@ -36,15 +31,13 @@ struct DrivenStep {
   double cpu_us = 0.0;  ///< thread CPU time
   double wall_us = 0.0;
   double fixed_us = 0.0;  ///< thread CPU time of FixedWork directly after the step, if there is any
-  std::array<double, kStepPhases> phase_us{};  ///< wall-clock time in each phase, if phases are timed
 };
 
 /// Simulates the insertion and times its steps.
-/// @param phases reads the clock at every change of phase, which takes time itself
 /// @param least least number of steps; the insertion is repeated, in turn with the same needle and a new one
 /// @param fixed run and timed after each step; may be null
-std::vector<DrivenStep> drive_needle(const std::shared_ptr<const Model>& model, bool phases, long least,
-                                     const Progress& progress, const FixedWork* fixed = nullptr);
+std::vector<DrivenStep> drive_needle(const std::shared_ptr<const Model>& model, long least, const Progress& progress,
+                                     const FixedWork* fixed = nullptr);
 
 /// Indices of the steps with at least 85 % of the largest number of contacts.
 std::vector<std::size_t> full_steps(const std::vector<DrivenStep>& steps);

@@ -66,7 +66,7 @@ Result<ScaleRow> measure(const MeshedAnatomy& anatomy, int contacts, long least,
   row.store_s = measure::wall_s() - start - row.factor_s;
   row.memory_mb = resident_mb();
 
-  const std::vector<DrivenStep> steps = drive_needle(*model, false, least, progress, &fixed);
+  const std::vector<DrivenStep> steps = drive_needle(*model, least, progress, &fixed);
   const std::vector<double> medians = medians_of_repeats(steps);
   std::vector<double> over;
   row.all_steps = static_cast<long>(steps.size());

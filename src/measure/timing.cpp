@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/measure/timing.hpp"
 
+#include "core/clock.hpp"
+
 #include <dlfcn.h>
 
 #include <algorithm>
-#include <chrono>
-#include <ctime>
 #include <fstream>
 #include <limits>
 #include <thread>
@@ -34,13 +34,9 @@ std::string asked(const char* function) {
 
 }  // namespace
 
-double wall_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double wall_s() { return 1e-9 * static_cast<double>(monotonic_ns()); }
 
-double thread_cpu_s() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
+double thread_cpu_s() { return 1e-9 * static_cast<double>(thread_cpu_ns()); }
 
 double median(std::vector<double> values) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();

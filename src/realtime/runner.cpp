@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/realtime/runner.hpp"
 
-#include "clock.hpp"
+#include "core/clock.hpp"
 #include "device_loop.hpp"
 #include "step_loop.hpp"
 #include "thread_setup.hpp"

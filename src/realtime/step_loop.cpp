@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "step_loop.hpp"
 
-#include "clock.hpp"
+#include "core/clock.hpp"
 #include "handle.hpp"
 #include "thread_setup.hpp"
 

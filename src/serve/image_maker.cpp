@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "image_maker.hpp"
 
+#include "core/clock.hpp"
 #include "stylet/imaging/fluoroscope.hpp"
 #include "stylet/imaging/pressing_probe.hpp"
 #include "stylet/imaging/scan_conversion.hpp"
@@ -13,7 +14,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <ctime>
 #include <numbers>
 #include <numeric>
 #include <optional>
@@ -27,12 +27,6 @@ using ImageJson = nlohmann::json;
 constexpr double kImageRange_dB = 100.0;  // of the values that are sent; the page chooses its own range of them
 
 ImageJson json_of(const Vec3& x) { return {x.x(), x.y(), x.z()}; }
-
-double processor_ms() {
-  std::timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
 
 std::vector<SurfacePoint> every_node(const TetMesh& mesh) {
   std::vector<SurfacePoint> points;
@@ -260,7 +254,7 @@ Result<> ImageMaker::Parts::prepare_scanner(const std::function<void(const std::
 }
 
 Result<std::shared_ptr<const LiveImage>> ImageMaker::Parts::ultrasound() {
-  const double before = processor_ms();
+  const std::int64_t before = thread_cpu_ns();
   const ProbeKind kind = tables.probe.kind == ProbeKind::none ? ProbeKind::biplane : tables.probe.kind;
   const ProbePlace place = probe_place(tables.probe, *seat);
   Moment shown_moment = moment;
@@ -290,13 +284,13 @@ Result<std::shared_ptr<const LiveImage>> ImageMaker::Parts::ultrasound() {
                           {"right", json_of(beams.across)},
                           {"up", json_of(beams.ahead)},
                           {"probe", probe_json(place, force_N)},
-                          {"took_ms", processor_ms() - before}}
+                          {"took_ms", 1e-6 * static_cast<double>(thread_cpu_ns() - before)}}
                     .dump();
   return std::shared_ptr<const LiveImage>(std::move(image));
 }
 
 Result<std::shared_ptr<const LiveImage>> ImageMaker::Parts::xray() {
-  const double before = processor_ms();
+  const std::int64_t before = thread_cpu_ns();
   if (!fluoroscope) {
     auto made = Fluoroscope::create(*patient.mesh, tables.fluoroscopy);
     if (!made) return made.error();
@@ -322,7 +316,7 @@ Result<std::shared_ptr<const LiveImage>> ImageMaker::Parts::xray() {
                           {"energy_keV", tables.fluoroscopy.energy_keV},
                           {"mm_per_pixel", picture.mm_per_pixel},
                           {"probe", std::move(probe)},
-                          {"took_ms", processor_ms() - before}}
+                          {"took_ms", 1e-6 * static_cast<double>(thread_cpu_ns() - before)}}
                     .dump();
   return std::shared_ptr<const LiveImage>(std::move(image));
 }

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base_steps.hpp"
 
+#include "stylet/sim/harms.hpp"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -31,6 +35,28 @@ long deepest_step(const Model& model, const PlannedInsertion& insertion, const B
     deepest = k;
   }
   return deepest;
+}
+
+void StepRemarks::add(const Simulation& simulation) {
+  ++steps_;
+  if ((simulation.last_step().flags & Step::kDistrusted) != 0) ++without_balance_;
+  unbroken_.add(simulation);
+  for (const Event& event : simulation.new_events()) {
+    const auto same = [&](const Event& before) { return before.region == event.region; };
+    if (event.kind == EventKind::region_entered && std::none_of(entered_.begin(), entered_.end(), same))
+      entered_.push_back(event);
+  }
+}
+
+std::vector<std::string> StepRemarks::sentences() const {
+  std::vector<std::string> remarks = harms(entered_);
+  if (auto warning = unbroken_.warning()) remarks.push_back(std::move(*warning));
+  if (without_balance_ > 0) {
+    remarks.push_back(
+        fmt::format("In {} of {} steps no balance of needle and tissue was found; a smaller run.dt_ms helps.",
+                    without_balance_, steps_));
+  }
+  return remarks;
 }
 
 std::optional<Vec3> tip_error_mm(const Insertion& insertion, const Step& step) {

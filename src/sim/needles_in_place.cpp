@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "needles_in_place.hpp"
 
-#include "stylet/sim/harms.hpp"
 #include "stylet/sim/material_search.hpp"
-#include "stylet/sim/unbroken_surface.hpp"
 
 #include <fmt/format.h>
-
-#include <algorithm>
 
 namespace stylet {
 
@@ -25,31 +21,16 @@ std::optional<Vec3> displacement_of_material_at(Simulation& simulation, const Ve
 }
 
 /// Puts the needle that the hand holds in, to its full depth, and waits as its plan says.
-std::vector<std::string> put_in(Simulation& simulation, const PlannedInsertion& insertion) {
+Result<std::vector<std::string>> put_in(Simulation& simulation, const PlannedInsertion& insertion) {
   const BaseSteps motion = planned_steps(simulation.model(), insertion);
-  UnbrokenSurface unbroken;
-  std::vector<Event> events;
-  long without_balance = 0;
+  StepRemarks watch;
   simulation.place(insertion);
-  for (long k = 1; k <= motion.count; ++k) {
-    simulation.prepare();
-    const Step& step = simulation.step(motion.base(k), motion.dt_s(k));
-    if ((step.flags & Step::kDistrusted) != 0) ++without_balance;
-    unbroken.add(simulation);
-    for (const Event& event : simulation.new_events()) {
-      const bool is_known = std::any_of(events.begin(), events.end(), [&](const Event& before) {
-        return before.kind == event.kind && before.region == event.region;
-      });
-      if (!is_known) events.push_back(event);
-    }
-  }
-  std::vector<std::string> remarks = harms(events);
-  if (auto warning = unbroken.warning()) remarks.push_back(std::move(*warning));
-  if (without_balance > 0) {
-    remarks.push_back(
-        fmt::format("In {} of {} steps no balance of needle and tissue was found; a smaller run.dt_ms helps.",
-                    without_balance, motion.count));
-  }
+  const auto add = [&](long, const Step&, double) -> Result<> {
+    watch.add(simulation);
+    return Ok{};
+  };
+  if (Result<> done = drive(simulation, motion, motion.count, add); !done) return done.error();
+  std::vector<std::string> remarks = watch.sentences();
   for (std::string& remark : remarks) remark = fmt::format("Needle in place, {}: {}", insertion.name, remark);
   return remarks;
 }
@@ -66,8 +47,9 @@ Result<std::vector<std::string>> put_in_staying_needles(Simulation& simulation, 
     report(progress, "needle in place, " + staying[k].name,
            static_cast<double>(k) / static_cast<double>(staying.size()));
     if (Result<> taken = simulation.take_up(static_cast<int>(k)); !taken) return taken.error();
-    const std::vector<std::string> of_needle = put_in(simulation, staying[k]);
-    remarks.insert(remarks.end(), of_needle.begin(), of_needle.end());
+    const auto of_needle = put_in(simulation, staying[k]);
+    if (!of_needle) return of_needle.error();
+    remarks.insert(remarks.end(), of_needle->begin(), of_needle->end());
   }
   if (Result<> taken = simulation.take_up(static_cast<int>(staying.size())); !taken) return taken.error();
   simulation.start_clock();

@@ -4,13 +4,6 @@
 #include "needles_in_place.hpp"
 #include "stylet/core/flush_denormals.hpp"
 #include "stylet/sim/gland_watch.hpp"
-#include "stylet/sim/harms.hpp"
-#include "stylet/sim/simulation.hpp"
-#include "stylet/sim/unbroken_surface.hpp"
-
-#include <fmt/format.h>
-
-#include <algorithm>
 
 namespace stylet {
 
@@ -24,13 +17,6 @@ std::vector<std::string> names_of_target(const Model& model) {
   for (const int region : model.target_regions())
     names.push_back(model.mesh().regions[static_cast<std::size_t>(region)]);
   return names;
-}
-
-/// Whether the event is that a region is entered that has been entered before; one remark for it is enough.
-bool has_entered(const std::vector<Event>& events, const Event& event) {
-  return std::any_of(events.begin(), events.end(), [&](const Event& before) {
-    return before.kind == event.kind && before.kind == EventKind::region_entered && before.region == event.region;
-  });
 }
 
 }  // namespace
@@ -72,17 +58,9 @@ Result<Prediction> predict(const std::shared_ptr<const Model>& model, KnownTarge
     beside.emplace(simulation, target ? &*target : nullptr, names_of_target(*model), motion.base(deepest),
                    *std::move(remarks_in_place));
   }
-  UnbrokenSurface unbroken;
-  std::vector<Event> events;
-  long without_balance = 0;
-  for (long k = 1; k <= deepest; ++k) {
-    simulation.prepare();
-    const Step& step = simulation.step(motion.base(k), motion.dt_s(k));
-    if ((step.flags & Step::kDistrusted) != 0) ++without_balance;
-    unbroken.add(simulation);
-    for (const Event& event : simulation.new_events()) {
-      if (!has_entered(events, event)) events.push_back(event);
-    }
+  StepRemarks remarks;
+  const auto watch = [&](long k, const Step& step, double) -> Result<> {
+    remarks.add(simulation);
     if (gland) {
       const TargetMotion::Moment now = target->now(simulation.insertion());
       gland->add(step, simulation.new_events(), now.motion, now.at_rest, k == deepest);
@@ -90,7 +68,9 @@ Result<Prediction> predict(const std::shared_ptr<const Model>& model, KnownTarge
     }
     if (k % kReportEvery == 0)
       report(progress, "inserting " + insertion.name, static_cast<double>(k) / static_cast<double>(deepest));
-  }
+    return Ok{};
+  };
+  if (Result<> done = drive(simulation, motion, deepest, watch); !done) return done.error();
 
   Prediction result;
   if (gland) {
@@ -100,13 +80,7 @@ Result<Prediction> predict(const std::shared_ptr<const Model>& model, KnownTarge
   }
   result.tip_error_mm = tip_error_mm(simulation.insertion(), simulation.last_step());
   if (beside) result.in_place = beside->result(result.tip_error_mm);
-  result.remarks = harms(events);
-  if (auto warning = unbroken.warning()) result.remarks.push_back(std::move(*warning));
-  if (without_balance > 0) {
-    result.remarks.push_back(
-        fmt::format("In {} of {} steps no balance of needle and tissue was found; a smaller run.dt_ms helps.",
-                    without_balance, deepest));
-  }
+  result.remarks = remarks.sentences();
   return result;
 }
 

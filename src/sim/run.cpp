@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -23,12 +22,6 @@
 namespace stylet {
 
 namespace {
-
-double thread_cpu_us() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
-}
 
 double quantile(const std::vector<double>& sorted, double q) {
   if (sorted.empty()) return 0.0;
@@ -137,14 +130,9 @@ class Runner {
     }
     if (auto r = take_frame("before"); !r) return r;
     double next_frame = start + frame_every_s_;  // the frame "before" is the first of the series
-    for (long k = 1; k <= motion.count; ++k) {
-      const Pose base = motion.base(k);
-      const double dt = motion.dt_s(k);
-      simulation_.prepare();
-      const double before = thread_cpu_us();
-      simulation_.step(base, dt);
-      Step record = simulation_.last_step();
-      record.step_us = thread_cpu_us() - before;
+    auto watch = [&](long k, const Step& step, double cpu_us) -> Result<> {
+      Step record = step;
+      record.step_us = cpu_us;
       if (auto r = account(record, insertion); !r) return r;
       unbroken.add(simulation_);
       if (gland) {
@@ -173,7 +161,9 @@ class Runner {
         if (auto r = take_frame({}); !r) return r;
       }
       if (k % 64 == 0) report(progress_, "inserting " + insertion.name, record.time_s / total_s_);
-    }
+      return Ok{};
+    };
+    if (auto done = drive(simulation_, motion, motion.count, watch); !done) return done;
     if (gland) keep(gland->result());
     if (auto warning = unbroken.warning()) summary_.warnings.push_back(std::move(*warning));
     return take_frame("after");

@@ -91,23 +91,23 @@ class Bench(InFolder):
             self.assertGreater(ratios["warm"]["woodbury_over_event"], 1)
         self.assertEqual(result["event_woodbury"]["nodes"], result["events"][0]["nodes"])
 
-    def test_needle_gives_every_model_with_its_errors_and_its_cost(self):
-        result = self.json_of("bench", "needle")
-        self.assertEqual({row["model"] for row in result["rows"]}, {"beam", "springs", "tet"})
-        self.assertEqual(sum(row["default"] for row in result["rows"]), 3)
-        for row in result["rows"]:
-            self.assertEqual(len(row["error_elastica_deflection"]), len(result["tip_slopes_deg"]))
-            self.assertGreater(row["solve_us"], 0)
+    def test_pictures_times_every_kind_of_picture(self):
+        rows = self.json_of("bench", "pictures", "--nodes", "3000")["rows"]
+        self.assertEqual([row["picture"] for row in rows],
+                         ["surfaces", "section", "ultrasound, transverse", "ultrasound, sagittal", "X-ray", "probe"])
+        for row in rows:
+            self.assertLess(abs(row["nodes"] - 3000), 0.03 * 3000)
+            times = row["cpu_us"]
+            self.assertTrue(0 < times["p50"] <= times["p99"] <= times["max"])
+        self.refuse("bench", "pictures", "--nodes", "2999", says=["--nodes", "2999", "3000"])
 
     def test_an_unknown_subject_is_refused_with_those_there_are(self):
-        self.refuse("bench", "remsh", says=["remsh", "remesh", "coupling"])
+        self.refuse("bench", "remsh", says=["remsh", "remesh", "pictures"])
 
     def test_an_option_of_another_subject_is_refused_with_those_that_take_it(self):
-        self.refuse("bench", "step", "--contacts", "20", says=["--contacts", "step", "scale, loop, viewers, pictures"])
-        self.refuse("bench", "scale", "--seconds", "3", says=["--seconds", "scale", "loop, viewers, pictures"])
-        self.refuse("bench", "scale", "--speed", "4", says=["--speed", "scale", "supply"])
-        self.refuse("bench", "loop", "--steps", "1000", says=["--steps", "loop", "scale"])
-        self.refuse("bench", "needle", "--nodes", "600", says=["--nodes", "needle", "remesh", "display"])
+        self.refuse("bench", "dose", "--contacts", "20", says=["--contacts", "dose", "scale"])
+        self.refuse("bench", "dose", "--nodes", "600", says=["--nodes", "dose", "remesh, scale, pictures"])
+        self.refuse("bench", "pictures", "--steps", "1000", says=["--steps", "pictures", "scale"])
 
 
 if __name__ == "__main__":

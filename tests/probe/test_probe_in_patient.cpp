@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The probe in the demo patient, and on large blocks.
 #include "pressed_block.hpp"
-#include "stylet/measure/probe_bench.hpp"
+#include "stylet/measure/demo.hpp"
 #include "stylet/probe/patient_probe.hpp"
 #include "support/sanitized.hpp"
 

@@ -57,8 +57,8 @@ class Documents(unittest.TestCase):
         said = "# A\nPictures <!-- absent: stylet image --> and a probe <!-- absent: probe in src/io/*.cpp --> are absent.\n"
         self.assertEqual(self.complaints({"README.md": said, "src/io/a.cpp": "", "src/io/README.md": "# io\n"})[0], 0)
         self.refused({"README.md": said, "src/io/a.cpp": "int x;\nint probe;\n", "src/io/README.md": "# io\n",
-                      "docs/reference/options.md": "# O\n`stylet image` [back](../index.md)\n"},
-                     "README.md:2: stylet image is said to be absent, and docs/reference/options.md:2 has it",
+                      "build/docs/reference/options.md": "# O\n`stylet image`\n"},
+                     "README.md:2: stylet image is said to be absent, and build/docs/reference/options.md:2 has it",
                      "README.md:2: probe is said to be absent, and src/io/a.cpp:2 has it")
         self.refused({"README.md": said}, "there is no file src/io/*.cpp")
 

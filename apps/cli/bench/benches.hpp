@@ -17,24 +17,15 @@ struct BenchArguments {
   int contacts = 0;
   int needles = 0;
   long steps = 0;
-  double seconds = 0.0;  ///< [s] wall-clock time
-  double speed = 0.0;    ///< [mm/s]
 };
 
 inline constexpr int kRemeshNodes = 1331;
 
+Result<> bench_pictures_command(const BenchArguments& arguments, Console& console);
 Result<> bench_remesh_command(const BenchArguments& arguments, Console& console);
 Result<> bench_scale_command(const BenchArguments& arguments, Console& console);
-Result<> bench_step_command(const BenchArguments& arguments, Console& console);
-Result<> bench_loop_command(const BenchArguments& arguments, Console& console);
-Result<> bench_supply_command(const BenchArguments& arguments, Console& console);
-Result<> bench_display_command(const BenchArguments& arguments, Console& console);
-Result<> bench_fluoro_command(const BenchArguments& arguments, Console& console);
-Result<> bench_probe_command(const BenchArguments& arguments, Console& console);
 Result<> bench_dose_command(const BenchArguments& arguments, Console& console);
 Result<> bench_together_command(const BenchArguments& arguments, Console& console);
-Result<> bench_image_command(const BenchArguments& arguments, Console& console);
-Result<> bench_viewers_command(const BenchArguments& arguments, Console& console);
 
 /// Refuses `--nodes` below `fewest`.
 /// @param why the reason for this minimum, shown as the last clause of the error

@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-/// The rules by which a plan is plausible, whatever format it comes from. They are the table of
-/// docs/reference/plan_rules.md, which a test compares with plan_rules().
+/// The rules by which a plan is plausible, whatever format it comes from. `stylet dose --print-rules` prints them.
 namespace stylet {
 
 /// One rule. A plan that breaks it is refused where the dose would surely be wrong, and warned of otherwise.

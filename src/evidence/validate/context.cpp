@@ -29,7 +29,7 @@ Result<TetMesh> Context::demo_mesh() {
   return *demo_mesh_;
 }
 
-Result<std::shared_ptr<const measure::RecordedRun>> Context::demo_run() {
+Result<std::shared_ptr<const RecordedRun>> Context::demo_run() {
   if (!demo_run_) {
     Scenario scenario = measure::demo_scenario();
     scenario.output.frames_per_s = 0.0;
@@ -37,16 +37,16 @@ Result<std::shared_ptr<const measure::RecordedRun>> Context::demo_run() {
     if (!mesh) return mesh.error();
     const auto model = Model::compile(scenario, *mesh, "the demo", {}, progress_);
     if (!model) return model.error();
-    auto recorded = measure::record_run(*model, targets_, progress_);
+    auto recorded = record_run(*model, targets_, progress_);
     if (!recorded) return recorded.error();
-    demo_run_ = std::make_shared<const measure::RecordedRun>(std::move(*recorded));
+    demo_run_ = std::make_shared<const RecordedRun>(std::move(*recorded));
   }
   return demo_run_;
 }
 
-Result<std::vector<measure::CouplingRow>> Context::demo_on_meshes() {
+Result<std::vector<DemoOnMesh>> Context::demo_on_meshes() {
   if (demo_on_meshes_.empty()) {
-    auto rows = measure::bench_coupling({.largest = 10000, .mesh_only = true}, progress_);
+    auto rows = validate::demo_on_meshes(10000, progress_);
     if (!rows) return rows.error();
     demo_on_meshes_ = std::move(*rows);
   }

@@ -1,44 +1,38 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "number_table.hpp"
 
-#include "detail/text.hpp"
+#include "detail/csv.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <fstream>
 
 namespace stylet::validate {
 
 Result<std::vector<std::vector<double>>> read_number_table(const std::filesystem::path& file,
                                                            const std::vector<std::string>& names) {
-  std::ifstream stream(file);
-  std::string line;
+  auto csv = detail::read_csv_lines(file);
+  if (!csv) return csv.error();
+  auto line = csv->lines.begin();
   std::vector<std::size_t> wanted;
-  if (!names.empty()) {
-    std::getline(stream, line);
-    const auto header = detail::split(line, ',');
+  if (line != csv->lines.end() && names.empty()) {
+    for (std::size_t k = 0; k < line->fields.size(); ++k) wanted.push_back(k);
+  } else if (line != csv->lines.end()) {
     for (const std::string& name : names) {
-      const auto found =
-          std::find_if(header.begin(), header.end(), [&](const auto& field) { return detail::trimmed(field) == name; });
-      if (found == header.end())
+      const auto found = std::find(line->fields.begin(), line->fields.end(), name);
+      if (found == line->fields.end())
         return input_error(file.string(), fmt::format("there is no column '{}'", name),
                            "Use the file as it was published");
-      wanted.push_back(static_cast<std::size_t>(found - header.begin()));
+      wanted.push_back(static_cast<std::size_t>(found - line->fields.begin()));
     }
+    ++line;
   }
-  std::vector<std::vector<double>> columns(names.size());
-  while (std::getline(stream, line)) {
-    const auto fields = detail::split(line, ',');
-    if (wanted.empty()) {
-      for (std::size_t k = 0; k < fields.size(); ++k) wanted.push_back(k);
-      columns.resize(wanted.size());
-    }
+  std::vector<std::vector<double>> columns(wanted.size());
+  for (; line != csv->lines.end(); ++line) {
     std::vector<double> numbers;
     for (const std::size_t k : wanted) {
-      const auto number = k < fields.size() ? detail::to_number(fields[k]) : std::nullopt;
-      if (!number || !std::isfinite(*number)) break;
+      const auto number = k < line->fields.size() ? detail::csv_number(line->fields[k]) : std::nullopt;
+      if (!number) break;
       numbers.push_back(*number);
     }
     if (numbers.size() != columns.size()) continue;

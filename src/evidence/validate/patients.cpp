@@ -28,8 +28,7 @@ Result<TetMesh> Patients::mesh(Context& context, PatientCase patient) {
   return *mask_;
 }
 
-Result<std::shared_ptr<const measure::RecordedRun>> Patients::run(Context& context, PatientCase patient,
-                                                                  const PatientRun& how) {
+Result<std::shared_ptr<const RecordedRun>> Patients::run(Context& context, PatientCase patient, const PatientRun& how) {
   auto& kept = runs_[{patient, how}];
   if (kept) return kept;
   Scenario scenario = measure::demo_scenario();
@@ -52,9 +51,9 @@ Result<std::shared_ptr<const measure::RecordedRun>> Patients::run(Context& conte
   if (!own_mesh) return own_mesh.error();
   const auto model = Model::compile(scenario, *own_mesh, "the patient", {}, context.progress());
   if (!model) return model.error();
-  auto recorded = measure::record_run(*model, context.targets(), context.progress());
+  auto recorded = record_run(*model, context.targets(), context.progress());
   if (!recorded) return recorded.error();
-  kept = std::make_shared<const measure::RecordedRun>(std::move(*recorded));
+  kept = std::make_shared<const RecordedRun>(std::move(*recorded));
   return kept;
 }
 

@@ -34,13 +34,13 @@ class Patients {
 
   /// Whether the data of a patient are available.
   static bool is_there(const Context& context, PatientCase patient);
-  Result<std::shared_ptr<const measure::RecordedRun>> run(Context& context, PatientCase patient, const PatientRun& how);
+  Result<std::shared_ptr<const RecordedRun>> run(Context& context, PatientCase patient, const PatientRun& how);
 
  private:
   Result<TetMesh> mesh(Context& context, PatientCase patient);
 
   std::optional<TetMesh> mask_;
-  std::map<std::pair<PatientCase, PatientRun>, std::shared_ptr<const measure::RecordedRun>> runs_;
+  std::map<std::pair<PatientCase, PatientRun>, std::shared_ptr<const RecordedRun>> runs_;
 };
 
 /// Stiffness of the gland's seat [N/mm], without creep: a force along the patient's axis (z), spread evenly over the

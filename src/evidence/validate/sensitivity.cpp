@@ -110,7 +110,7 @@ class Study {
   [[nodiscard]] Result<Summary> summary_of(const Scenario& scenario) {
     const auto model = Model::compile(scenario, mesh_, "sensitivity");
     if (!model) return model.error();
-    auto recorded = measure::record_run(*model, targets_);
+    auto recorded = record_run(*model, targets_);
     if (!recorded) return recorded.error();
     return std::move(recorded->summary);
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Seeds that were found on images after an implant (docs/formats.md).
+#include "detail/csv.hpp"
 #include "detail/file_kind.hpp"
 #include "detail/reach.hpp"
-#include "dose/csv_table.hpp"
 #include "stylet/io/dose_io.hpp"
 #include "stylet/io/found_seeds_io.hpp"
 

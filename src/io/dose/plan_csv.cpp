@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Plans in CSV (docs/formats.md): a row for each seed, or for each needle with its train.
+#include "detail/csv.hpp"
 #include "detail/text.hpp"
-#include "dose/csv_table.hpp"
 #include "dose/plan_words.hpp"
 #include "stylet/core/nearest_name.hpp"
 

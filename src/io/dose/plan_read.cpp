@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The public readers of dose_io.hpp: they recognise the kind of file and run its parser.
+#include "detail/csv.hpp"
 #include "detail/dicom.hpp"
 #include "detail/file_kind.hpp"
 #include "detail/guard.hpp"
 #include "detail/text.hpp"
-#include "dose/csv_table.hpp"
 #include "dose/dose_parsers.hpp"
 #include "dose/plan_words.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "detail/csv.hpp"
 #include "detail/file_kind.hpp"
-#include "detail/text.hpp"
 #include "stylet/io/scenario_io.hpp"
 
 #include <fmt/format.h>
@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <numbers>
 
 namespace stylet {
@@ -22,7 +21,6 @@ constexpr std::size_t kFirstOfQuaternion = 4;  ///< among kMotionColumns
 
 /// For each of kMotionColumns its column in the file, as the file's header says.
 using ColumnOrder = std::array<std::size_t, kMotionColumns.size()>;
-constexpr std::size_t kLongestLine = 1000;
 
 constexpr double kNormTolerance = 1e-3;
 // Coordinates beyond this are a mistaken unit; no insertion is that large.
@@ -42,9 +40,9 @@ std::array<std::string_view, 4> quaternion_of(const ColumnOrder& order) {
   return names;
 }
 
-/// Parses one line of numbers.
-Result<MotionSample> parse_sample(std::string_view line, const ColumnOrder& order, const std::string& where) {
-  const auto fields = detail::split(line, ',');
+/// The sample of one line.
+Result<MotionSample> parse_sample(const std::vector<std::string>& fields, const ColumnOrder& order,
+                                  const std::string& where) {
   if (fields.size() != kMotionColumns.size()) {
     return input_error(where,
                        fmt::format("the line has {} fields, {} are expected", fields.size(), kMotionColumns.size()),
@@ -52,10 +50,10 @@ Result<MotionSample> parse_sample(std::string_view line, const ColumnOrder& orde
   }
   std::array<double, kMotionColumns.size()> v{};
   for (std::size_t i = 0; i < kMotionColumns.size(); ++i) {
-    const auto number = detail::to_number(fields[order[i]]);
-    if (!number || !std::isfinite(*number)) {
+    const auto number = detail::csv_number(fields[order[i]]);
+    if (!number) {
       return input_error(fmt::format("{}, column {} ({})", where, order[i] + 1, kMotionColumns[i]),
-                         fmt::format("'{}' is not a finite number", detail::trimmed(fields[order[i]])),
+                         fmt::format("'{}' is not a finite number", fields[order[i]]),
                          "Write a number with a decimal point, such as 12.5; leave out samples without a reading");
     }
     v[i] = *number;
@@ -104,13 +102,7 @@ Result<> check_step(const MotionSample& before, const MotionSample& after, const
 }
 
 /// The columns in the order in which the header names them.
-Result<ColumnOrder> read_header(std::string_view line, const std::string& where) {
-  std::string header;
-  for (const char c : detail::trimmed(line)) {
-    if (c != ' ' && c != '\t' && c != '"') header += c;
-  }
-  if (header.starts_with("\xEF\xBB\xBF")) header.erase(0, 3);  // byte order mark, which some spreadsheets write
-  const auto names = detail::split(header, ',');
+Result<ColumnOrder> read_header(const std::vector<std::string>& names, const std::string& where) {
   ColumnOrder order{};
   bool complete = names.size() == kMotionColumns.size();
   for (std::size_t i = 0; i < kMotionColumns.size(); ++i) {
@@ -119,6 +111,7 @@ Result<ColumnOrder> read_header(std::string_view line, const std::string& where)
     complete = complete && found != names.end();
   }
   if (complete) return order;
+  std::string header = fmt::format("{}", fmt::join(names, ","));
   if (header.size() > 100) header = header.substr(0, 100) + "…";
   for (char& c : header) {
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
@@ -204,24 +197,20 @@ Result<std::vector<MotionSample>> read_motion_csv(const std::filesystem::path& p
     return input_error(file, fmt::format("this is {}, a recorded motion (CSV) is expected", detail::name_of(*kind)),
                        how);
   }
-  std::ifstream stream(path, std::ios::binary);
+  const auto csv = detail::read_csv_lines(path);
+  if (!csv) return csv.error();
   std::vector<MotionSample> samples;
   ColumnOrder order{};
   Eigen::AlignedBox3d box;
-  std::string line;
-  for (std::size_t number = 1; std::getline(stream, line); ++number) {
+  for (const auto& [number, fields] : csv->lines) {
     const std::string where = fmt::format("{}, line {}", file, number);
-    if (line.find('\0') != std::string::npos || line.size() > kLongestLine) {
-      return input_error(where, "this is not a line of text", how);
-    }
-    if (number == 1) {
-      const auto header = read_header(line, where);
+    if (&fields == &csv->lines.front().fields) {
+      const auto header = read_header(fields, where);
       if (!header) return header.error();
       order = *header;
       continue;
     }
-    if (detail::trimmed(line).empty()) continue;
-    const auto sample = parse_sample(line, order, where);
+    const auto sample = parse_sample(fields, order, where);
     if (!sample) return sample.error();
     if (!samples.empty()) {
       if (auto step = check_step(samples.back(), *sample, where); !step) return step.error();
@@ -229,7 +218,6 @@ Result<std::vector<MotionSample>> read_motion_csv(const std::filesystem::path& p
     samples.push_back(*sample);
     box.extend(sample->base.origin);
   }
-  if (stream.bad()) return input_error(file, "the file cannot be read to its end", "Copy it again");
   if (samples.size() < 2) {
     return input_error(file, fmt::format("there are {} samples, at least 2 are expected", samples.size()),
                        "Record the motion from before the skin to the end");

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The examples of plans, sources and goals in docs/formats.md are read as the text says.
 #include "io/dose/dose_folder.hpp"
-#include "stylet/dose/plan_rules.hpp"
 #include "stylet/io/dose_io.hpp"
 
 #include <gtest/gtest.h>
 
-#include <cctype>
 #include <iterator>
 
 namespace stylet {
@@ -46,34 +44,6 @@ TEST_F(DoseDocumentation, has_goals_that_can_be_read) {
   const auto goals = read_goals(example("structure,metric,bound,citation\nprostate", "goals.csv"));
   ASSERT_TRUE(goals.ok()) << goals.error().message();
   EXPECT_EQ(goals->size(), 2U);
-}
-
-/// A text without white space, and with the page's entities.
-std::string squeezed(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '<' || c == '>' || c == '&') continue;
-    if (std::isspace(static_cast<unsigned char>(c)) == 0) out += c;
-  }
-  return out;
-}
-
-// docs/reference/plan_rules.md has each rule of the program, with its bounds, in the same order.
-TEST(PlanRulesPage, is_the_table_of_the_program) {
-  std::ifstream file(std::filesystem::path(STYLET_SOURCE_DIR) / "docs" / "reference" / "plan_rules.md");
-  const std::string page = squeezed(std::string{std::istreambuf_iterator<char>(file), {}});
-  std::string expected;
-  for (const PlanRule& rule : plan_rules()) {
-    expected += "<tr>";
-    for (const std::string& cell : {rule.name, rule.bound, rule.verdict, rule.reason})
-      expected += "<td>" + cell + "</td>";
-    expected += "</tr>\n";
-    EXPECT_NE(page.find(squeezed("td" + rule.name + "/tdtd" + rule.bound + "/tdtd" + rule.verdict + "/tdtd" +
-                                 rule.reason + "/td")),
-              std::string::npos)
-        << rule.name;
-  }
-  EXPECT_NE(page.find(squeezed(expected) + "/table"), std::string::npos) << "write this table:\n" << expected;
 }
 
 }  // namespace

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "stylet/core/progress.hpp"
-#include "stylet/measure/coupling_bench.hpp"
+#include "stylet/evidence/validate/demo_on_meshes.hpp"
+#include "stylet/evidence/validate/recorded_run.hpp"
 #include "stylet/measure/demo.hpp"
-#include "stylet/measure/recorded_run.hpp"
 
 #include <filesystem>
 #include <memory>
@@ -34,9 +34,9 @@ class Context {
   /// The demo patient, meshed as in the demo scenario (about 3,000 nodes). Meshed once.
   Result<TetMesh> demo_mesh();
   /// The demo insertion: hole e3.5, in and out at 20 mm/s, with default parameters. Simulated once.
-  Result<std::shared_ptr<const measure::RecordedRun>> demo_run();
+  Result<std::shared_ptr<const RecordedRun>> demo_run();
   /// The demo insertion on meshes of 500 to 10,000 nodes, with the near field and with node addition. Simulated once.
-  Result<std::vector<measure::CouplingRow>> demo_on_meshes();
+  Result<std::vector<DemoOnMesh>> demo_on_meshes();
 
  private:
   bool quick_;
@@ -44,8 +44,8 @@ class Context {
   Progress progress_;
   KnownTargets targets_;
   std::optional<TetMesh> demo_mesh_;
-  std::shared_ptr<const measure::RecordedRun> demo_run_;
-  std::vector<measure::CouplingRow> demo_on_meshes_;
+  std::shared_ptr<const RecordedRun> demo_run_;
+  std::vector<DemoOnMesh> demo_on_meshes_;
 };
 
 }  // namespace stylet::validate

@@ -24,19 +24,19 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 using Measure = Result<Finding> (*)(Context&, Patients&, PatientCase);
 
 /// The gland's shift when its surface breaks; empty if it does not break.
-std::optional<Vec3> shift_at_break(const measure::RecordedRun& run) {
+std::optional<Vec3> shift_at_break(const RecordedRun& run) {
   return run.summary.gland ? run.summary.gland->shift_at_break_mm : std::nullopt;
 }
 
-double norm_at_break(const measure::RecordedRun& run) {
+double norm_at_break(const RecordedRun& run) {
   const auto shift = shift_at_break(run);
   return shift ? shift->norm() : kNone;
 }
 
 /// The puncture of the skin, which is the first puncture of a run; null if there is none.
-const Event* skin_break(const measure::RecordedRun& run) { return run.event(EventKind::puncture); }
+const Event* skin_break(const RecordedRun& run) { return run.event(EventKind::puncture); }
 
-Plot force_plot(const measure::RecordedRun& run) {
+Plot force_plot(const RecordedRun& run) {
   Curve in{.label = "on the way in", .x = {}, .y = {}};
   for (const Step& s : run.steps) {
     if (in.x.empty() || s.base_depth_mm > in.x.back()) in.add(s.base_depth_mm, s.force_axial_N);
@@ -44,7 +44,7 @@ Plot force_plot(const measure::RecordedRun& run) {
   return {.x_label = "base depth [mm]", .y_label = "axial force [N]", .curves = {in}};
 }
 
-Plot path_plot(const measure::RecordedRun& run) {
+Plot path_plot(const RecordedRun& run) {
   std::array<Curve, 3> axes{Curve{.label = "to the left", .x = {}, .y = {}},
                             Curve{.label = "to posterior", .x = {}, .y = {}},
                             Curve{.label = "to superior", .x = {}, .y = {}}};
@@ -114,7 +114,7 @@ Result<Finding> skin_dent(Context& context, Patients& patients, PatientCase pati
   if (!run) return run.error();
   const auto slow = patients.run(context, patient, {.speed_mm_per_s = kSlow_mm_per_s});
   if (!slow) return slow.error();
-  const auto dent = [](const measure::RecordedRun& r) {
+  const auto dent = [](const RecordedRun& r) {
     const Event* contact = r.event(EventKind::skin_contact);
     const Event* skin = skin_break(r);
     return contact != nullptr && skin != nullptr ? skin->depth_mm - contact->depth_mm : kNone;

@@ -16,7 +16,7 @@ constexpr const char* kDefault = "near-field";
 constexpr Index kCoarsest = 1500;
 
 /// The force of the hand, with a point every 20 ms.
-Curve curve_of(const measure::CouplingRow& row) {
+Curve curve_of(const DemoOnMesh& row) {
   Curve curve{.label = fmt::format("{}, {} nodes", row.method, row.nodes), .x = {}, .y = {}};
   if (row.method != kDefault) curve.kind = Curve::Kind::reference;
   const auto every = static_cast<std::size_t>(std::max(1L, std::lround(20e-3 / row.curve.dt_s)));
@@ -32,7 +32,7 @@ Result<Finding> force(Context& context) {
   finding.plot = {.x_label = "time [s]", .y_label = "axial force [N]"};
   finding.value = 0.0;
   std::string others;
-  for (const measure::CouplingRow& row : *rows) {
+  for (const DemoOnMesh& row : *rows) {
     if (row.method == kDefault) {
       if (row.nodes >= kCoarsest) finding.value = worse(finding.value, row.rms_vs_finest_percent);
       finding.note += fmt::format("{} nodes: RMS difference {:.2f} %, skin breaks at {:.1f} mm, capsule at {:.1f} mm. ",
@@ -46,8 +46,8 @@ Result<Finding> force(Context& context) {
   }
   finding.note += fmt::format(
       "With node addition (finest mesh dashed), nodes, RMS difference from its own finest mesh and depth at which the "
-      "skin breaks: {}. The mesh of 500 nodes is shown but not judged, because its layers are thinner than an element. "
-      "stylet bench coupling includes meshes up to 40,000 nodes (docs/theory/near_field.md §8).",
+      "skin breaks: {}. The mesh of 500 nodes is shown but not judged, because its layers are thinner than an element "
+      "(docs/theory/near_field.md §8).",
       others);
   finding.why_missed =
       "The capsule breaks at the same force but at another depth: at the border of fat and gland the tip’s own "
@@ -62,7 +62,7 @@ Result<Finding> shift(Context& context) {
   finding.plot = {.x_label = "nodes", .y_label = "shift of the gland [mm]", .log_x = true};
   finding.value = 0.0;
   double finest = 0.0;
-  for (const measure::CouplingRow& row : *rows) {
+  for (const DemoOnMesh& row : *rows) {
     auto& curves = finding.plot.curves;
     if (curves.empty() || curves.back().label != row.method) {
       finest = row.target_shift_mm;
@@ -81,7 +81,7 @@ Result<Finding> shift(Context& context) {
   }
   finding.note +=
       "The target’s mean displacement is computed from the needle’s forces by reciprocity, on coarse meshes with "
-      "quadratic elements. stylet bench coupling includes meshes up to 40,000 nodes.";
+      "quadratic elements.";
   finding.why_missed =
       "The field of a body force on the target, from which its shift is computed, still depends on the mesh, mainly "
       "near the ends of supports.";

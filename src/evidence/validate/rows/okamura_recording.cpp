@@ -8,8 +8,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/tools/minima.hpp>
 #include <cmath>
-#include <numeric>
+#include <limits>
 
 namespace stylet::validate {
 
@@ -108,28 +109,19 @@ Result<Finding> force_over_depth(Context& context) {
   if (!path) return Finding::skip(context.no_data(kFile));
   const auto recording = read_recording_of(*path);
   if (!recording) return recording.error();
-  // The puncture force is taken from the recording. The modulus is fitted on a logarithmic grid that is refined twice.
-  const double depth = recording->depth_mm.back();
-  double best_rms = 1e300;
-  double best_kPa = 0.0;
-  Curve best;
-  double low = std::log(kSoftest_kPa);
-  double high = std::log(kStiffest_kPa);
-  for (int round = 0; round < 3; ++round) {
-    const double step = (high - low) / 8.0;
-    for (int k = 0; k <= 8; ++k) {
-      const double kPa = std::exp(low + step * k);
-      auto curve = simulate(kPa, recording->first_peak_N, depth);
-      if (!curve) return curve.error();
-      const double off = rms(*recording, *curve);
-      if (off >= best_rms) continue;
-      best_rms = off;
-      best_kPa = kPa;
-      best = std::move(*curve);
-    }
-    low = std::max(std::log(kSoftest_kPa), std::log(best_kPa) - step);
-    high = std::min(std::log(kStiffest_kPa), std::log(best_kPa) + step);
-  }
+  // The puncture force is taken from the recording. The logarithm of the modulus is fitted.
+  const auto simulated = [&](double log_kPa) {
+    return simulate(std::exp(log_kPa), recording->first_peak_N, recording->depth_mm.back());
+  };
+  const auto rms_at = [&](double log_kPa) {
+    const auto curve = simulated(log_kPa);
+    return curve ? rms(*recording, *curve) : std::numeric_limits<double>::infinity();
+  };
+  const auto [best_log_kPa, best_rms] =
+      boost::math::tools::brent_find_minima(rms_at, std::log(kSoftest_kPa), std::log(kStiffest_kPa), 12);
+  const auto best = simulated(best_log_kPa);
+  if (!best) return best.error();
+  const double best_kPa = std::exp(best_log_kPa);
   const double peak = *std::max_element(recording->force_N.begin(), recording->force_N.end());
   const double punch_kPa = okamura::modulus_kPa(Scenario{}.needle.diameter_mm, default_tissue("body").poisson);
   const bool plausible =
@@ -151,7 +143,8 @@ Result<Finding> force_over_depth(Context& context) {
       .x_label = "depth from contact [mm]",
       .y_label = "axial force [N]",
       .curves = {
-          best, {.label = "recorded", .x = recording->depth_mm, .y = recording->force_N, .kind = Curve::Kind::points}}};
+          *best,
+          {.label = "recorded", .x = recording->depth_mm, .y = recording->force_N, .kind = Curve::Kind::points}}};
   return finding;
 }
 

@@ -3,7 +3,7 @@
 #include "../rows.hpp"
 #include "published_values.hpp"
 
-#include "stylet/measure/probe_bench.hpp"
+#include "stylet/measure/demo.hpp"
 
 #include <fmt/format.h>
 

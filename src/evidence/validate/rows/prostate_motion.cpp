@@ -15,14 +15,14 @@ namespace {
 
 using namespace published;
 
-Result<measure::RecordedRun> run_demo(Context& context, const Scenario& scenario) {
+Result<RecordedRun> run_demo(Context& context, const Scenario& scenario) {
   const auto mesh = context.demo_mesh();
   if (!mesh) return mesh.error();
   Scenario complete = scenario;
   complete.output.frames_per_s = 0.0;
   const auto model = Model::compile(complete, *mesh, "the demo", {}, context.progress());
   if (!model) return model.error();
-  return measure::record_run(*model, context.targets(), context.progress());
+  return record_run(*model, context.targets(), context.progress());
 }
 
 /// Results of needles through holes on all sides of the gland, one after the other.

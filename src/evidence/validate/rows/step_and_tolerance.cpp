@@ -2,7 +2,7 @@
 // Results must not depend on the time step or on the solver's tolerance.
 #include "../rows.hpp"
 #include "../scene.hpp"
-#include "stylet/measure/force_curve.hpp"
+#include "stylet/evidence/validate/force_curve.hpp"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@ namespace {
 Result<Finding> force_over_time_steps(Context&) {
   const auto model = Block().compile();
   if (!model) return model.error();
-  std::vector<measure::ForceCurve> forces;
+  std::vector<ForceCurve> forces;
   Finding finding;
   finding.plot = {.x_label = "time [s]", .y_label = "axial force [N]"};
   finding.value = 0.0;
@@ -26,7 +26,7 @@ Result<Finding> force_over_time_steps(Context&) {
     drive.go(55.0, 20.0, dt);
     drive.wait(0.1, dt);
     drive.go(-1.0, 20.0, dt);
-    measure::ForceCurve& force = forces.emplace_back(measure::ForceCurve{.dt_s = dt, .force_N = {}});
+    ForceCurve& force = forces.emplace_back(ForceCurve{.dt_s = dt, .force_N = {}});
     for (const DriveStep& step : drive.steps()) force.force_N.push_back(step.record.force_axial_N);
     Curve curve{.label = fmt::format("{:g} ms", 1e3 * dt), .x = {}, .y = {}};
     const auto every = static_cast<std::size_t>(std::lround(2e-3 / dt));
@@ -34,7 +34,7 @@ Result<Finding> force_over_time_steps(Context&) {
       curve.add(static_cast<double>(k) * dt, force.force_N[k - 1]);
     finding.plot.curves.push_back(std::move(curve));
     if (forces.size() == 1) continue;
-    const double rms = 100.0 * measure::rms_difference_N(force, forces.front()) / forces.front().peak_N();
+    const double rms = 100.0 * rms_difference_N(force, forces.front()) / forces.front().peak_N();
     finding.value = worse(finding.value, rms);
     each += fmt::format("{}{:.2f} % at {:g} ms", each.empty() ? "" : ", ", rms, 1e3 * dt);
   }

@@ -3,33 +3,12 @@
 #include "benches.hpp"
 
 #include "stylet/measure/scale_bench.hpp"
-#include "stylet/measure/step_bench.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 
 namespace stylet::cli {
-
-namespace {
-
-std::vector<std::string> phase_cells(const std::string& what, const measure::StepRow& row,
-                                     const std::array<double, kStepPhases>& us) {
-  std::vector<std::string> cells{std::to_string(row.contacts_max), what};
-  const double all = std::accumulate(us.begin(), us.end(), 0.0);
-  cells.push_back(number(all, 1));
-  for (const double phase : us) cells.push_back(number(100.0 * phase / all, 1));
-  return cells;
-}
-
-Json phases_json(const std::array<double, kStepPhases>& us) {
-  Json json;
-  for (int p = 0; p < kStepPhases; ++p) json[to_string(static_cast<StepPhase>(p))] = us[static_cast<std::size_t>(p)];
-  return json;
-}
-
-}  // namespace
 
 Result<> bench_scale_command(const BenchArguments& arguments, Console& console) {
   measure::ScaleBenchOptions options;
@@ -131,50 +110,6 @@ Result<> bench_scale_command(const BenchArguments& arguments, Console& console) 
       "Mesh, factor, store: time before the first step, for meshing the contours, factorising the stiffness, and "
       "computing the stored compliances with everything else. Memory: resident memory after that.");
   console.say(table.text());
-  return console.write_json(json);
-}
-
-Result<> bench_step_command(const BenchArguments& arguments, Console& console) {
-  measure::StepBenchOptions options;
-  if (arguments.nodes > 0) options.nodes = arguments.nodes;
-  if (auto checked = check_nodes("step", options.nodes, 500,
-                                 "Give 500 or more, the nodes of the coarsest mesh of the demo patient");
-      !checked)
-    return checked;
-  const auto rows = measure::bench_step(options, console.progress());
-  if (!rows) return rows.error();
-  Table times({"nodes", "contacts", "steps", "iterations", "mean [µs]", "p50 [µs]", "p99 [µs]", "p99.9 [µs]",
-               "max [µs]", "clock [%]"});
-  std::vector<std::string> header{"contacts", "steps", "[µs]"};
-  for (int p = 0; p < kStepPhases; ++p) header.emplace_back(std::string(to_string(static_cast<StepPhase>(p))) + " [%]");
-  Table phases(header);
-  Json json{{"rows", Json::array()}};
-  for (const measure::StepRow& row : *rows) {
-    times.row({std::to_string(row.nodes), std::to_string(row.contacts_max), std::to_string(row.steps),
-               number(row.iterations, 2), number(row.mean_us, 0), number(row.cpu_us.p50, 0), number(row.cpu_us.p99, 0),
-               number(row.cpu_us.p999, 0), number(row.cpu_us.max, 0), number(100.0 * row.clock_share, 1)});
-    phases.row(phase_cells("all", row, row.phase_us));
-    phases.row(phase_cells("slowest 1 %", row, row.slow_phase_us));
-    json["rows"].push_back({{"nodes", row.nodes},
-                            {"contacts", row.contacts},
-                            {"contacts_max", row.contacts_max},
-                            {"steps", row.steps},
-                            {"iterations", row.iterations},
-                            {"step_cpu_us", times_json(row.cpu_us)},
-                            {"step_cpu_mean_us", row.mean_us},
-                            {"phase_us", phases_json(row.phase_us)},
-                            {"slow_phase_us", phases_json(row.slow_phase_us)},
-                            {"clock_share", row.clock_share}});
-  }
-  json["machine"] = machine_json();
-  console.say(
-      "Processor time of a step with nearly all contacts, in the insertion of `bench scale`. Clock: by how much a step "
-      "gets longer when the clock\n"
-      "is read in every phase; for each step the shortest of four runs with the clock and of four runs without it is "
-      "taken.");
-  console.say(times.text());
-  console.say("Share of each phase in the processor time, over all steps and over the slowest hundredth of the steps:");
-  console.say(phases.text());
   return console.write_json(json);
 }
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace stylet::measure {
+namespace stylet::validate {
 
 /// Axial force of the hand over time, with a constant time step.
 struct ForceCurve {
@@ -23,4 +23,4 @@ ForceCurve force_curve(std::span<const Step> steps, double dt_s);
 /// larger time step must be a multiple of the smaller. NaN if they have no time in common.
 double rms_difference_N(const ForceCurve& one, const ForceCurve& other);
 
-}  // namespace stylet::measure
+}  // namespace stylet::validate

@@ -12,8 +12,26 @@
 
 namespace stylet::detail {
 
-/// A table of comma-separated values with a header line. Lines "# key: value" give keys; other lines with '#' are
-/// comments. Quoted fields are allowed.
+/// A line of comma-separated values.
+struct CsvLine {
+  int number = 0;  ///< in the file, from 1
+  std::vector<std::string> fields;
+};
+
+/// The lines of a file of comma-separated values. Lines "# key: value" give keys; other lines with '#' are comments.
+/// Quoted fields are allowed. Empty lines are left out.
+struct CsvLines {
+  std::map<std::string, std::string> keys;  ///< of the lines "# key: value"
+  std::vector<CsvLine> lines;
+};
+
+/// Errors: the file cannot be read; a line that is no text, or no comma-separated values.
+Result<CsvLines> read_csv_lines(const std::filesystem::path& path);
+
+/// The finite number in a field; empty: it has none.
+std::optional<double> csv_number(const std::string& field);
+
+/// A table of comma-separated values with a header line (CsvLines).
 struct CsvTable {
   std::string file;
   std::map<std::string, std::string> keys;  ///< of the lines "# key: value"

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace stylet::measure {
+namespace stylet::validate {
 
 /// A simulated insertion with all its steps.
 struct RecordedRun {
@@ -31,4 +31,4 @@ Result<RecordedRun> record_run(const std::shared_ptr<const Model>& model, const 
 Result<RecordedRun> record_run(const std::shared_ptr<const Model>& model, KnownTargets& targets,
                                const Progress& progress = {});
 
-}  // namespace stylet::measure
+}  // namespace stylet::validate

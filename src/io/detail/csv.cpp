@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "dose/csv_table.hpp"
+#include "detail/csv.hpp"
 
 #include "detail/input_file.hpp"
 #include "detail/text.hpp"
@@ -26,6 +26,40 @@ std::vector<std::string> fields_of(const std::string& line) {
 
 }  // namespace
 
+Result<CsvLines> read_csv_lines(const std::filesystem::path& path) {
+  constexpr std::size_t longest = 100000;
+  if (Result<> file = check_input_file(path); !file) return file.error();
+  CsvLines read;
+  std::ifstream stream(path, std::ios::binary);
+  std::string line;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    const std::string where = fmt::format("{}, line {}", path.string(), number);
+    if (line.find('\0') != std::string::npos || line.size() > longest)
+      return input_error(where, "this is not a line of text", "Give a file of comma-separated values");
+    if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);  // some spreadsheets write this mark
+    line = trimmed(line);
+    if (line.empty()) continue;
+    if (line.front() == '#') {
+      const auto colon = line.find(':');
+      if (colon != std::string::npos) read.keys[trimmed(line.substr(1, colon - 1))] = trimmed(line.substr(colon + 1));
+      continue;
+    }
+    try {
+      read.lines.push_back({number, fields_of(line)});
+    } catch (const std::exception& error) {
+      return input_error(where, fmt::format("the line is not comma-separated values ({})", error.what()),
+                         "Check quotes and backslashes in this line");
+    }
+  }
+  if (stream.bad()) return input_error(path.string(), "the file cannot be read to its end", "Copy it again");
+  return read;
+}
+
+std::optional<double> csv_number(const std::string& field) {
+  const auto number = to_number(field);
+  return number && std::isfinite(*number) ? number : std::nullopt;
+}
+
 bool CsvTable::has(const std::string& column) const {
   return std::find(columns.begin(), columns.end(), column) != columns.end();
 }
@@ -37,8 +71,7 @@ std::string CsvTable::text(std::size_t row, const std::string& column) const {
 
 Result<double> CsvTable::number(std::size_t row, const std::string& column) const {
   const std::string value = text(row, column);
-  const auto number = to_number(value);
-  if (number && std::isfinite(*number)) return *number;
+  if (const auto number = csv_number(value)) return *number;
   return input_error(fmt::format("{}, column {}", where(row), column),
                      fmt::format("'{}' is not a finite number", value), "Correct this field");
 }
@@ -46,28 +79,12 @@ Result<double> CsvTable::number(std::size_t row, const std::string& column) cons
 std::string CsvTable::where(std::size_t row) const { return fmt::format("{}, line {}", file, lines[row]); }
 
 Result<CsvTable> read_csv_table(const std::filesystem::path& path, std::span<const std::string> known) {
-  if (Result<> file = check_input_file(path); !file) return file.error();
+  Result<CsvLines> read = read_csv_lines(path);
+  if (!read) return read.error();
   CsvTable table;
   table.file = path.string();
-  std::ifstream stream(path);
-  std::string line;
-  for (int number = 1; std::getline(stream, line); ++number) {
-    if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
-    line = trimmed(line);
-    if (line.empty()) continue;
-    if (line.front() == '#') {
-      const auto colon = line.find(':');
-      if (colon != std::string::npos) table.keys[trimmed(line.substr(1, colon - 1))] = trimmed(line.substr(colon + 1));
-      continue;
-    }
-    std::vector<std::string> fields;
-    try {
-      fields = fields_of(line);
-    } catch (const std::exception& error) {
-      return input_error(fmt::format("{}, line {}", table.file, number),
-                         fmt::format("the line is not comma-separated values ({})", error.what()),
-                         "Check quotes and backslashes in this line");
-    }
+  table.keys = std::move(read->keys);
+  for (auto& [number, fields] : read->lines) {
     if (table.columns.empty()) {
       table.columns = fields;
       for (const std::string& column : fields) {

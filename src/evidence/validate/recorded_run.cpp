@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stylet/measure/recorded_run.hpp"
+#include "stylet/evidence/validate/recorded_run.hpp"
 
-namespace stylet::measure {
+namespace stylet::validate {
 
 namespace {
 
@@ -47,4 +47,4 @@ Result<RecordedRun> record_run(const std::shared_ptr<const Model>& model, KnownT
   return recorded;
 }
 
-}  // namespace stylet::measure
+}  // namespace stylet::validate

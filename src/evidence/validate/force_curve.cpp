@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stylet/measure/force_curve.hpp"
+#include "stylet/evidence/validate/force_curve.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace stylet::measure {
+namespace stylet::validate {
 
 double ForceCurve::peak_N() const {
   double peak = 0.0;
@@ -32,4 +32,4 @@ double rms_difference_N(const ForceCurve& one, const ForceCurve& other) {
   return std::sqrt(sum / static_cast<double>(count));
 }
 
-}  // namespace stylet::measure
+}  // namespace stylet::validate
