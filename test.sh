@@ -36,7 +36,7 @@ format()        { scripts/check_format; }
 module_order()  { scripts/check_module_order; }
 machine_paths() { scripts/check_machine_paths; }
 documents()     { scripts/check_documents; }
-sizes()         { scripts/class_sizes && scripts/lines; }
+sizes()         { mkdir -p build; scripts/class_sizes --check > build/class_sizes.txt || { cat build/class_sizes.txt; return 1; }; scripts/lines; }
 build()         { scripts/build release; }
 commands()      { scripts/check_commands build/bin/stylet; }
 unit_tests()    { run_tests release --parallel "$(nproc)" --label-regex unit; }

@@ -12,6 +12,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <string_view>
 
 namespace stylet::measure {
 
@@ -38,7 +40,7 @@ class Trial {
     ours_.reset();
     Index hint = nodes_.front().at.tet;
     for (const AddedNode& node : nodes_) {
-      ours_s_.push_back(cpu_seconds([&] {
+      seconds_["ours"].push_back(cpu_seconds([&] {
         const auto at = way_.locator->find(node.x, hint, node.travel);
         ours_.add(*at, node.x, placement_, node.travel);
         hint = at->tet;
@@ -55,7 +57,7 @@ class Trial {
       const MatX change = stiffness_change(tissue_, node);
       woodbury_.append_node();
       woodbury_.change(node.dofs, change);
-      cold_s_.push_back(cpu_seconds([&] {
+      seconds_["cold"].push_back(cpu_seconds([&] {
         const auto at = way_.locator->find(node.x, hint, node.travel);
         ours_.add(*at, node.x, placement_, node.travel);
         hint = at->tet;
@@ -63,8 +65,8 @@ class Trial {
     }
   }
 
-  void round_of_woodbury() { round_of(woodbury_, woodbury_s_, &woodbury_update_s_); }
-  void round_of_bcs() { round_of(bcs_, bcs_s_, nullptr); }
+  void round_of_woodbury() { round_of(woodbury_, seconds_["woodbury"], &seconds_["woodbury_update"]); }
+  void round_of_bcs() { round_of(bcs_, seconds_["bcs"], nullptr); }
 
   /// Times the lemma on the whole matrix, and the rank-k update of one triangle by BLAS.
   void round_of_matrices() {
@@ -80,11 +82,11 @@ class Trial {
       N += 3;
       MatX change = stiffness_change(tissue_, node);
       change.diagonal().tail<3>().array() -= 1.0 / delta;
-      full_s_.push_back(
+      seconds_["full"].push_back(
           cpu_seconds([&] { paper::update_by_woodbury<double>(M.topLeftCorner(N, N), node.dofs, change); }));
       const auto k = static_cast<Eigen::Index>(node.dofs.size());
       const MatX columns = M.topLeftCorner(N, k);
-      rank_s_.push_back(cpu_seconds([&] {
+      seconds_["rank"].push_back(cpu_seconds([&] {
         cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, static_cast<int>(N), static_cast<int>(k), -1.0,
                     columns.data(), static_cast<int>(N), 1.0, other.data(), static_cast<int>(size));
       }));
@@ -97,7 +99,7 @@ class Trial {
     const Eigen::Index old = way_.inverse->rows();
     const Eigen::Index size = old + 3 * static_cast<Eigen::Index>(nodes_.size());
     MatX K(size, size);
-    inverse_s_.push_back(cpu_seconds([&] {
+    seconds_["inverse"].push_back(cpu_seconds([&] {
       K.setZero();
       K.topLeftCorner(old, old) = MatX(tissue_.stiffness());
       for (const AddedNode& node : nodes_) {
@@ -116,21 +118,23 @@ class Trial {
     constexpr int times_over = 200;
     for (const AddedNode& node : nodes_) {
       double sum = 0.0;
-      stiffness_s_.push_back(cpu_seconds([&] {
-                               for (int i = 0; i < times_over; ++i) sum += stiffness_change(tissue_, node)(0, 0);
-                             }) /
-                             times_over);
+      seconds_["stiffness"].push_back(cpu_seconds([&] {
+                                        for (int i = 0; i < times_over; ++i)
+                                          sum += stiffness_change(tissue_, node)(0, 0);
+                                      }) /
+                                      times_over);
       const auto& element = node.change.before.front();
       const Material& material =
           tissue_.material(tissue_.mesh().tet_region[static_cast<std::size_t>(element.base_tet)]);
       Vec4 weights = element.weights(node.x).cwiseMax(0.01);
-      hat_s_.push_back(cpu_seconds([&] {
-                         for (int i = 0; i < times_over; ++i) {
-                           weights[0] += 1e-9;  // so that the compiler cannot move the computation out of the loop
-                           sum += hat_stiffness(element.gradients, element.volume, material, weights)(0, 0);
-                         }
-                       }) /
-                       times_over);
+      seconds_["hat"].push_back(cpu_seconds([&] {
+                                  for (int i = 0; i < times_over; ++i) {
+                                    weights[0] +=
+                                        1e-9;  // so that the compiler cannot move the computation out of the loop
+                                    sum += hat_stiffness(element.gradients, element.volume, material, weights)(0, 0);
+                                  }
+                                }) /
+                                times_over);
       kept_ += sum;
     }
   }
@@ -141,16 +145,16 @@ class Trial {
     cost.dofs = tissue_.free_dofs();
     cost.events = static_cast<int>(nodes_.size());
     for (const AddedNode& node : nodes_) cost.change = std::max(cost.change, static_cast<int>(node.dofs.size()));
-    cost.ours = times(ours_s_);
-    cost.ours_cold = times(cold_s_);
-    cost.woodbury = times(woodbury_s_);
-    cost.woodbury_full = times(full_s_);
-    cost.bcs = times(bcs_s_);
-    cost.inverse = times(inverse_s_);
-    cost.rank_update = times(rank_s_);
-    cost.stiffness = times(stiffness_s_);
-    cost.hat = times(hat_s_);
-    cost.woodbury_update_s = median(woodbury_update_s_);
+    cost.ours = times(seconds_["ours"]);
+    cost.ours_cold = times(seconds_["cold"]);
+    cost.woodbury = times(seconds_["woodbury"]);
+    cost.woodbury_full = times(seconds_["full"]);
+    cost.bcs = times(seconds_["bcs"]);
+    cost.inverse = times(seconds_["inverse"]);
+    cost.rank_update = times(seconds_["rank"]);
+    cost.stiffness = times(seconds_["stiffness"]);
+    cost.hat = times(seconds_["hat"]);
+    cost.woodbury_update_s = median(seconds_["woodbury_update"]);
     cost.largest_error = std::max({full_error_, inverse_error_, error_of(woodbury_), error_of(bcs_)});
     return cost;
   }
@@ -198,8 +202,7 @@ class Trial {
   TrackCompliance ours_;
   paper::DenseInverse woodbury_;
   paper::DenseInverse bcs_;
-  std::vector<double> ours_s_, cold_s_, woodbury_s_, woodbury_update_s_, full_s_, bcs_s_, inverse_s_, rank_s_,
-      stiffness_s_, hat_s_;
+  std::map<std::string_view, std::vector<double>> seconds_;  ///< [s] of each method, one per event and round
   double full_error_ = 0.0;
   double inverse_error_ = 0.0;
   double kept_ = 0.0;  ///< uses the results of the timed loops, so that the compiler does not remove them
