@@ -22,9 +22,13 @@ export STYLET_CACHE=$PWD/build/kept  # meshes that many tests need
 run_tests() {
   local times=$PWD/build/test_times/$1.xml
   local options=("${@:2}")
-  if [ -z "$all" ] && [ "$1" != threads ]; then
+  if [ -z "$all" ]; then
     scripts/turn check "$1" || return
     options+=(--exclude-regex "$(scripts/turn exclude "$1")")
+  fi
+  if ! ctest --preset "$1" "${options[@]}" --show-only | grep -q "Test *#"; then
+    echo "none of these tests runs in this turn"
+    return
   fi
   mkdir -p build/test_times
   ctest --preset "$1" "${options[@]}" --output-junit "$times" || return
@@ -44,14 +48,20 @@ sanitizers()    { run_tests sanitize --parallel "$(nproc)" --label-regex 'unit|l
 threads()       { run_tests threads; }
 lint()          { scripts/check_lint; }
 
+# instrument PRESET LABELS: compiles the programs of a preset with sanitizers that run in this turn.
+instrument() {
+  nice -n 15 cmake --preset "$1" --log-level=NOTICE || return
+  local programs=()
+  if [ -z "$all" ]; then
+    read -r -a programs < <(scripts/turn targets "$1" "$2") || true
+    if [ "${#programs[@]}" -eq 0 ]; then return 0; fi
+  fi
+  nice -n 15 scripts/build "$1" "${programs[@]}"
+}
 # The tests leave a processor idle now and then: the instrumented programs are compiled there meanwhile.
 compiling=
 tests() {
-  {
-    nice -n 15 cmake --preset sanitize --log-level=NOTICE &&
-      nice -n 15 scripts/build sanitize $([ -n "$all" ] || scripts/turn targets sanitize 'unit|long') &&
-      nice -n 15 scripts/build threads
-  } > build/instrumented_build.log 2>&1 &
+  { instrument sanitize 'unit|long' && instrument threads threads; } > build/instrumented_build.log 2>&1 &
   compiling=$!
   run_tests release --parallel "$(nproc)"
 }
