@@ -51,12 +51,13 @@ lint()          { scripts/check_lint; }
 # instrument PRESET LABELS: compiles the programs of a preset with sanitizers that run in this turn.
 instrument() {
   nice -n 15 cmake --preset "$1" --log-level=NOTICE || return
-  local programs=()
+  local programs=
   if [ -z "$all" ]; then
-    read -r -a programs < <(scripts/turn targets "$1" "$2") || true
-    if [ "${#programs[@]}" -eq 0 ]; then return 0; fi
+    programs=$(scripts/turn targets "$1" "$2") || return
+    if [ -z "$programs" ]; then return 0; fi
   fi
-  nice -n 15 scripts/build "$1" "${programs[@]}"
+  # shellcheck disable=SC2086 # names of targets, one word each
+  nice -n 15 scripts/build "$1" $programs
 }
 # The tests leave a processor idle now and then: the instrumented programs are compiled there meanwhile.
 compiling=

@@ -25,7 +25,7 @@ struct SampledTissue {
   std::vector<std::uint8_t> is_concretion;  ///< 1: a calcification
 };
 
-/// What the speckle of a picture needs to know about the picture.
+/// The beams of a picture and the tissue that they pass, from which its speckle is made.
 struct SpeckleScene {
   const UltrasoundBeams& beams;
   const BeamProfile& profile;

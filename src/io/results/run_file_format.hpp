@@ -28,7 +28,7 @@ inline constexpr const char* kImplantFileFormat = "stylet-implant";  ///< of the
 /// Columns of /parameters.
 inline constexpr std::array kParameterColumns{"name", "value", "unit", "source"};
 
-/// What belongs to the row of a frame besides its columns, for its check.
+/// The displacements, needle points and contacts of a frame, which the check of its row covers beside its columns.
 /// @param displacement (3n) @param needle points of the frame @param contacts bytes of their rows
 inline std::array<std::span<const std::byte>, 3> parts_of_frame(std::span<const float> displacement,
                                                                 std::span<const Vec3> needle,
