@@ -47,11 +47,11 @@ Result<Finding> force(Context& context) {
   finding.note += fmt::format(
       "With node addition (finest mesh dashed), nodes, RMS difference from its own finest mesh and depth at which the "
       "skin breaks: {}. The mesh of 500 nodes is shown but not judged, because its layers are thinner than an element "
-      "(docs/theory/near_field.md §8).",
+      "(docs/theory/near_field_evidence.md).",
       others);
   finding.why_missed =
       "The capsule breaks at the same force but at another depth: at the border of fat and gland the tip’s own "
-      "compliance still depends on the mesh (docs/theory/near_field.md §8).";
+      "compliance still depends on the mesh (docs/theory/near_field_evidence.md).";
   return finding;
 }
 
