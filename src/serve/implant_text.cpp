@@ -52,9 +52,8 @@ const char* word_of(SeedCause cause) { return cause == SeedCause::aim ? "hand" :
 
 ImplantJson seed_row(const SeedHistory& seed) {
   ImplantJson why;
-  for (const SeedCause cause : {SeedCause::aim, SeedCause::bend, SeedCause::motion, SeedCause::relaxation,
-                                SeedCause::strand, SeedCause::release})
-    why[word_of(cause)] = place_json(seed.by(cause));
+  for (const SeedCauseWords& words : kSeedCauses)
+    if (words.of_drop != nullptr) why[word_of(words.cause)] = place_json(seed.by(words.cause));
   return {{"number", seed.number},
           {"needle", seed.needle},
           {"planned_mm", place_json(seed.planned_mm)},
@@ -78,13 +77,13 @@ ImplantJson error_json(std::span<const SeedHistory> seeds) {
           {"axes_mm", axes}};
 }
 
+/// The causes that have moved a seed.
 ImplantJson causes_json(std::span<const SeedHistory> seeds) {
   ImplantJson rows = ImplantJson::array();
   for (const CauseOfErrors& of : causes_of_errors(seeds)) {
-    const bool may_be_absent =
-        of.cause == SeedCause::strand || of.cause == SeedCause::release || of.cause == SeedCause::probe;
-    if (may_be_absent && of.mean_mm == 0.0) continue;  // no strands, no jumps, or no probe that displaces the tissue
+    if (words_of(of.cause).of_drop == nullptr || of.mean_mm == 0.0) continue;
     rows.push_back({{"cause", word_of(of.cause)},
+                    {"meaning", words_of(of.cause).of_drop},
                     {"mean_mm", number_json(of.mean_mm)},
                     {"mean_xyz_mm", place_json(of.mean_vector_mm)}});
   }

@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import re
 from pathlib import Path
 
 # A small case that runs in one or two seconds.
@@ -21,9 +22,16 @@ dwell_s = 0.1
 retract_speed_mm_per_s = 40
 """
 
-FORCES_HEADER = ["time_s", "base_depth_mm", "force_axial_N", "force_sagittal_N", "force_lateral_N", "torque_x_Nmm",
-                 "torque_y_Nmm", "torque_z_Nmm", "tip_x_mm", "tip_y_mm", "tip_z_mm", "tip_state", "contacts",
-                 "sticking", "iterations", "step_us"]
+
+def documented_columns(table):
+    """The columns of a table as docs/results.md lists them; a test of the library compares that list with the code."""
+    page = (Path(__file__).resolve().parents[2] / "docs/results.md").read_text(encoding="utf-8")
+    listed = page.split(f"\n## {table}\n")[1].split("\n## ")[0]
+    names = [re.match(r"- ((`\w+`(, )?)+)", line) for line in listed.splitlines()]
+    return [name for found in names if found for name in re.findall(r"\w+", found[1])]
+
+
+FORCES_HEADER = documented_columns("forces.csv")
 TIP_STATES = {"air", "pressing", "cutting", "in_track", "bone", "exited"}
 FULL_INSERTION = ["skin_contact", "puncture", "region_entered", "retraction_start", "slip_start", "withdrawn"]
 

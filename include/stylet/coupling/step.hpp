@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "stylet/core/field.hpp"
 #include "stylet/core/types.hpp"
 
+#include <array>
 #include <cstdint>
 
 namespace stylet {
@@ -19,7 +21,7 @@ enum class TipState {
 const char* to_string(TipState state);
 
 /// One step: its inputs and its results. This one type goes from the coupling through the simulation to recordings, to
-/// the real-time loop and to the live view; file formats and protocols document which of its fields they carry. It owns
+/// the real-time loop and to the live view. The list of fields below says which of them tables and files carry. It owns
 /// no memory: copying a Step never allocates.
 ///
 /// Force and torque are those that the hand exerts on the needle's base: axial along the base's axis, positive when
@@ -82,5 +84,50 @@ struct Step {
   /// previous record, and their results equal its results within the tolerance of is_at_rest().
   std::int64_t rest_steps = 0;
 };
+
+template <>
+inline constexpr bool record::has_check<Step> = true;
+
+/// The columns of forces.csv and of /steps in run.h5. Their order is that in a file, from which the check of a row is
+/// made: a new field is the last one.
+void columns(auto& visit, record::Of<Step> auto& s) {
+  using record::Field, record::kFile;
+  visit(Field("time_s", "s", "simulated time at the end of the step"), s.time_s);
+  visit(Field("dt_s", "s", "duration of the step").only(kFile).since(2).unknown_before(), s.dt_s);
+  visit(Field("base{}_mm", "mm", "pose of the base: its place, LPS").only(kFile).since(2).apart().unknown_before(),
+        s.base.origin);
+  const Field turn = Field("", "", "its orientation, a quaternion").only(kFile).since(2).unknown_before();
+  const std::array names{"base_qx", "base_qy", "base_qz", "base_qw"};
+  for (const Eigen::Index k : {3, 0, 1, 2})
+    visit(turn.named(names[static_cast<std::size_t>(k)]), s.base.rotation.coeffs()[k]);
+  visit(Field("base_depth_mm", "mm",
+              "how far the tip of a rigid, straight needle on the same base would lie beyond the entry point"),
+        s.base_depth_mm);
+  visit(Field("force_axial_N", "N",
+              "force of the hand on the needle along the axis of the base, positive when pushing in")
+            .digits(9),
+        s.force_axial_N);
+  visit(Field("force_sagittal_N", "N",
+              "force of the hand across the needle, in the direction axial × lateral (towards posterior for a needle "
+              "that goes to superior)")
+            .digits(9),
+        s.force_sagittal_N);
+  visit(Field("force_lateral_N", "N", "force of the hand across the needle, towards the patient's left").digits(9),
+        s.force_lateral_N);
+  visit(Field("torque{}_Nmm", "N mm", "torque of the hand about the base point, LPS axes").digits(9).apart(),
+        s.torque_Nmm);
+  visit(Field("tip{}_mm", "mm", "position of the real tip, LPS").apart(), s.tip_mm);
+  visit(Field("tip_state", "",
+              "`air`, `pressing` (touches, does not cut), `cutting`, `in_track` (in tissue that is already cut), "
+              "`bone`, `exited`"),
+        s.tip_state);
+  visit(Field("contacts", "", "number of contact points on the needle"), s.contacts);
+  visit(Field("sticking", "", "number of these contacts that stick"), s.sticking);
+  visit(Field("iterations", "", "iterations of the coupled solver"), s.iterations);
+  visit(Field("step_us", "µs", "processor time of the step").digits(1), s.step_us);
+  visit(Field("rest_steps", "", "number of steps at rest between the row before and this row").only(kFile).since(3),
+        s.rest_steps);
+  visit(Field("flags", "", "warnings of the step, with the bits of the C interface").only(kFile).since(4), s.flags);
+}
 
 }  // namespace stylet

@@ -28,37 +28,40 @@ struct SeedCauseWords {
   SeedCause cause{};
   const char* name;      ///< in summary.json, in reports and in the live page
   const char* column;    ///< beginning of its columns in tables and files
-  bool is_live;          ///< can occur to a seed that a hand drops (`stylet serve`)
+  const char* of_drop;   ///< a sentence about a seed that a hand drops (`stylet serve`); null: it does not occur there
   const char* of_seed;   ///< a sentence about a seed of a permanent implant; null: it does not occur there
   const char* of_dwell;  ///< a sentence about a dwell position of a temporary implant; null: it does not occur there
   int since;             ///< first version of the run.h5 of an implant that has it
 };
 /// All causes, in the order of SeedCause.
 inline constexpr std::array kSeedCauses{
-    SeedCauseWords{SeedCause::bend, "needle bend", "bend", true,
+    SeedCauseWords{SeedCause::bend, "needle bend", "bend", "The needle was bent when it left the seed.",
                    "The needle was bent, or did not reach its depth, when the seed left it.",
                    "The catheter was bent, or did not reach its depth, when the images of the plan were taken.", 1},
-    SeedCauseWords{SeedCause::motion, "tissue motion", "motion", true,
+    SeedCauseWords{SeedCause::motion, "tissue motion", "motion",
+                   "The needle had displaced the tissue, which has gone back since and taken the seed along.",
                    "The needle held the tissue displaced when the seed was dropped; the tissue has gone back since and "
                    "has taken the seed along.",
                    "The catheters held the tissue displaced when the images of the plan were taken, so the dwell "
                    "position was in other tissue than planned.",
                    1},
-    SeedCauseWords{SeedCause::relaxation, "tissue relaxation", "relaxation", true,
+    SeedCauseWords{SeedCause::relaxation, "tissue relaxation", "relaxation",
+                   "The tissue had crept under the needle, which goes back slowly.",
                    "The tissue had crept under the needle when the seed was dropped; it has gone back since and has "
                    "taken the seed along.",
                    "The tissue had crept under the catheters when the images of the plan were taken.", 1},
-    SeedCauseWords{SeedCause::strand, "strand", "strand", true,
+    SeedCauseWords{SeedCause::strand, "strand", "strand", "The strand holds the seed at its distance from the others.",
                    "The strand holds the seed at its distance from the other seeds of the needle.", nullptr, 1},
-    SeedCauseWords{SeedCause::release, "release", "release", true,
+    SeedCauseWords{SeedCause::release, "release", "release", "The seed jumped along its track when it was let go.",
                    "The seed jumped along its track when it was let go.", nullptr, 1},
-    SeedCauseWords{SeedCause::aim, "aim", "aim", true,
+    SeedCauseWords{SeedCause::aim, "aim", "aim",
+                   "Where a straight needle held as you held it would have left the seed, less its planned place.",
                    "The needle was aimed beside the plan on purpose, to make up for the other causes.", nullptr, 1},
-    SeedCauseWords{SeedCause::probe, "probe", "probe", false,
+    SeedCauseWords{SeedCause::probe, "probe", "probe", nullptr,
                    "The probe held the gland displaced when the seed was dropped, and the contours of the plan were "
                    "drawn without it; with the probe out the tissue goes back and takes the seed along.",
                    nullptr, 1},
-    SeedCauseWords{SeedCause::wait, "planning to delivery", "wait", false, nullptr,
+    SeedCauseWords{SeedCause::wait, "planning to delivery", "wait", nullptr, nullptr,
                    "Tissue and catheter moved against each other between the images of the plan and the delivery.", 2},
 };
 constexpr const SeedCauseWords& words_of(SeedCause cause) { return kSeedCauses[static_cast<std::size_t>(cause)]; }

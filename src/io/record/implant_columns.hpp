@@ -37,7 +37,7 @@ void seed_columns(auto& visit, Of<SeedHistory> auto& s, bool live) {
   visit(Field("rest{}_mm", "mm", "place in the tissue at rest, with all needles out"), s.rest_mm);
   visit(Field("axis{}", "", "unit vector at rest, towards the tip of its needle"), s.axis);
   for (const SeedCauseWords& words : kSeedCauses)
-    if (words.is_live || !live) visit(field_of(words), s.by(words.cause));
+    if (words.of_drop != nullptr || !live) visit(field_of(words), s.by(words.cause));
   visit(Field("in_tissue", "", "whether the tissue where it was dropped could be found"), s.in_tissue);
   visit(Field("lost", "", "whether it has left the patient"), s.lost);
 }

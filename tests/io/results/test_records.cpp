@@ -211,7 +211,7 @@ TEST(Records, of_seeds_have_a_column_for_each_cause_that_can_occur) {
     };
     EXPECT_EQ(&words_of(words.cause), &words);
     EXPECT_TRUE(has(record::columns_of<SeedHistory>()));
-    EXPECT_EQ(has(record::columns_of<SeedAct>()), words.is_live);
+    EXPECT_EQ(has(record::columns_of<SeedAct>()), words.of_drop != nullptr);
     for (const Implant implant : {Implant::permanent, Implant::temporary}) {
       ShownSeed shown;
       shown.implant = implant;

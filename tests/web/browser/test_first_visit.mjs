@@ -9,9 +9,6 @@ import {
 import { shadesOf } from './png.mjs';
 import { makeFolder, startServer } from './server.mjs';
 
-const FORCES_HEADER = 'time_s,base_depth_mm,force_axial_N,force_sagittal_N,force_lateral_N,torque_x_Nmm,torque_y_Nmm,torque_z_Nmm,'
-  + 'tip_x_mm,tip_y_mm,tip_z_mm,tip_state,contacts,sticking,iterations,step_us';
-const WHAT_IT_COST = FORCES_HEADER.split(',').indexOf('iterations');  // first column that does not describe the needle
 const LONGEST_STEP_S = 0.0041;  // a step covers at most three missed steps
 
 skipWithoutChromium();
@@ -139,14 +136,15 @@ test('the insertion can be replayed, its time slider dragged, and its curve save
   const { name, bytes } = await download(() => page.locator('#replay').getByText('CSV').click());
   assert.match(name, /e3\.5.*\.csv$/);
   const lines = bytes.toString().trimEnd().split('\n');
-  assert.equal(lines[0], FORCES_HEADER);
-  assert.ok(lines.every((line) => line.split(',').length === 16));
+  const columns = lines[0].split(',');
+  for (const name of ['time_s', 'force_axial_N', 'tip_z_mm', 'step_us']) assert.ok(columns.includes(name), lines[0]);
+  assert.ok(lines.every((line) => line.split(',').length === columns.length));
   // Every step from the first to the last is there; a late step covers the milliseconds that were missed.
   const seconds = Number(await slider.getAttribute('max'));
   const times = lines.slice(1).map((line) => Number(line.split(',')[0]));
   assert.ok(times[0] <= LONGEST_STEP_S && Math.abs(times.at(-1) - seconds) < 1e-3, `from ${times[0]} to ${times.at(-1)} of ${seconds} s`);
-  // Of a rest the first and the last step are there. All columns of the needle are equal in both.
-  const needleOf = (line) => line.split(',').slice(1, WHAT_IT_COST).join();
+  // Of a rest the first and the last step are there. All columns before those about the solver are equal in both.
+  const needleOf = (line) => line.split(',').slice(1, columns.indexOf('iterations')).join();
   const isRest = (i) => needleOf(lines[i]) === needleOf(lines[i + 1]);
   const gap = times.findIndex((time, i) => i > 0 && !(time > times[i - 1] && (time < times[i - 1] + LONGEST_STEP_S || isRest(i))));
   assert.equal(gap, -1, `a gap after ${times[gap - 1]} s`);

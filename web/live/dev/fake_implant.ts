@@ -80,7 +80,7 @@ export class FakeImplant {
         axes_mm: [0, 1, 2].map((k) => ({ mean: mean((s) => s.rest_mm[k] - s.planned_mm[k]), sd: 1.1 })),
       },
       why: ['hand', 'needle bend', 'tissue motion', 'tissue relaxation'].map((cause) => ({
-        cause, mean_mm: mean((s) => Math.hypot(...s.why[cause])), mean_xyz_mm: [0, 0, mean((s) => s.why[cause][2])] as Place,
+        cause, meaning: '', mean_mm: mean((s) => Math.hypot(...s.why[cause])), mean_xyz_mm: [0, 0, mean((s) => s.why[cause][2])] as Place,
       })),
     };
   }

@@ -6,14 +6,6 @@ import { dialog } from '../controls/dialogs';
 import type { Session } from '../session';
 import { isFinished, lostSeeds, type Goal, type Implant, type Score } from './implant';
 
-const REASONS: Record<string, [string, string]> = {
-  hand: ['Your hand', 'where a straight needle held as you held it would have left the seed, less its planned place'],
-  'needle bend': ['Needle bend', 'the needle was bent when it left the seed'],
-  'tissue motion': ['Tissue motion', 'the needle had displaced the tissue, which has gone back since and taken the seed along'],
-  strand: ['Strand', 'the strand holds the seed at its distance from the others'],
-  release: ['Release', 'the seed jumped along its track when it was let go'],
-  'tissue relaxation': ['Tissue relaxation', 'the tissue had crept under the needle, which goes back slowly'],
-};
 const AXES: [string, string, string][] = [['Left–right', 'left', 'right'], ['Anterior–posterior', 'posterior', 'anterior'], ['Superior–inferior', 'superior', 'inferior']];
 
 function signedWords(value: number, positive: string, negative: string): string {
@@ -162,15 +154,15 @@ export class EndCard {
     const largest = Math.max(1e-9, ...why.map((cause) => cause.mean_mm ?? 0));
     const list = element('div', 'reasons');
     for (const cause of [...why].sort((a, b) => (b.mean_mm ?? 0) - (a.mean_mm ?? 0))) {
-      const [name, explained] = REASONS[cause.cause] ?? [cause.cause, ''];
       const line = element('div', 'reason');
-      line.title = explained;
+      line.title = cause.meaning;
+      const name = cause.cause === 'hand' ? 'your hand' : cause.cause;
       const bar = element('i');
       bar.style.width = `${(100 * (cause.mean_mm ?? 0)) / largest}%`;
       const track = element('span', 'reason-track');
       track.append(bar);
       const mean = cause.mean_xyz_mm[2];
-      line.append(element('span', '', name), track, element('b', '', `${(cause.mean_mm ?? 0).toFixed(1)} mm`),
+      line.append(element('span', '', name[0].toUpperCase() + name.slice(1)), track, element('b', '', `${(cause.mean_mm ?? 0).toFixed(1)} mm`),
         element('span', 'name', `on average ${signedWords(mean, 'superior', 'inferior')}`));
       list.append(line);
     }

@@ -21,7 +21,7 @@ export interface DroppedSeed {
   in_tissue: boolean; lost?: boolean; why: Record<string, Place>;
 }
 export interface Errors { seeds: number; mean_mm: number; p95_mm: number; largest_mm: number; axes_mm: { mean: number; sd: number }[] }
-export interface Cause { cause: string; mean_mm: number | null; mean_xyz_mm: Place }
+export interface Cause { cause: string; meaning: string; mean_mm: number | null; mean_xyz_mm: Place }
 export interface Implant {
   train_from_mm: number | null;  // a train is being left, begun at this depth of the base
   planned_seeds: number; seeds: DroppedSeed[]; computing: boolean; now: Score | null; planned: Score | null; error: Errors; why: Cause[];
