@@ -16,21 +16,18 @@ void see_dwell_positions(const NeedleLoad& load, Simulation& simulation, int num
     const double arc_mm = std::max(0.0, catheter.length() - load.seeds[k].behind_tip_mm);
     const Vec3 at = catheter.point(arc_mm);
     const TissueAt tissue = tissue_of_capsule(at, catheter.tangent(arc_mm), source_length_mm, displacement);
-    if (look == DwellLook::planning) {
-      dwell.at_planning = DwellAtPlanning{at, tissue.rest_mm};
-      dwell.in_tissue = tissue.is_known;
-      dwell.by(SeedCause::aim) = load.aim_mm;
-      dwell.by(SeedCause::bend) = at - dwell.planned_mm - load.aim_mm;
-      dwell.by(SeedCause::relaxation) = -tissue.lasting_mm;
-      dwell.by(SeedCause::motion) = tissue.rest_mm - at - dwell.by(SeedCause::relaxation);
-    } else {
-      dwell.in_tissue = dwell.in_tissue && tissue.is_known;
-      dwell.by(SeedCause::wait) = tissue.rest_mm - dwell.at_planning->tissue_mm;
-    }
     dwell.dropped_mm = at;
     dwell.rest_mm = tissue.rest_mm;
     dwell.axis = tissue.axis;
     dwell.dropped_s = simulation.time_s();
+    if (look == DwellLook::planning) {
+      dwell.at_planning = DwellAtPlanning{at, tissue.rest_mm};
+      dwell.in_tissue = tissue.is_known;
+      dwell.explain(load.aim_mm, tissue.lasting_mm);
+    } else {
+      dwell.in_tissue = dwell.in_tissue && tissue.is_known;
+      dwell.by(SeedCause::wait) = tissue.rest_mm - dwell.at_planning->tissue_mm;
+    }
   }
 }
 

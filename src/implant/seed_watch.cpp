@@ -38,10 +38,7 @@ void SeedWatch::leave(Seed& seed, Simulation& simulation, double since_start_s) 
   h.in_tissue = tissue.is_known;
   h.rest_mm = tissue.rest_mm;
   h.axis = tissue.axis;
-  h.by(SeedCause::aim) = load_.aim_mm;
-  h.by(SeedCause::bend) = h.dropped_mm - h.planned_mm - load_.aim_mm;
-  h.by(SeedCause::relaxation) = -tissue.lasting_mm;
-  h.by(SeedCause::motion) = h.rest_mm - h.dropped_mm - h.by(SeedCause::relaxation);
+  h.explain(load_.aim_mm, tissue.lasting_mm);
 }
 
 void SeedWatch::add(Simulation& simulation, double since_start_s) {

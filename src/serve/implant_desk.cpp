@@ -145,10 +145,7 @@ Result<SeedHistory> ImplantDesk::add(const ProbedDrop& drop) {
   h.axis = vec3(drop.axis);
   h.dropped_s = drop.time_s;
   h.in_tissue = drop.found;
-  h.by(SeedCause::aim) = vec3(drop.straight) - h.planned_mm;
-  h.by(SeedCause::bend) = h.dropped_mm - vec3(drop.straight);
-  h.by(SeedCause::relaxation) = -vec3(drop.lasting);
-  h.by(SeedCause::motion) = h.rest_mm - h.dropped_mm - h.by(SeedCause::relaxation);
+  h.explain(vec3(drop.straight) - h.planned_mm, vec3(drop.lasting));
   dropped_.push_back(h);
   seeds_have_changed();
   return state_.seeds.back();

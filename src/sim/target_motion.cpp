@@ -11,7 +11,8 @@ namespace {
 
 using Accuracy = VolumeResponse::Accuracy;
 
-/// The finest accuracy that takes seconds. docs/theory/near_field_evidence.md gives the remaining differences between meshes.
+/// The finest accuracy that takes seconds. docs/theory/near_field_evidence.md gives the remaining differences between
+/// meshes.
 Accuracy affordable(Index nodes) {
   constexpr Index halved = 700;
   constexpr Index quadratic = 5000;

@@ -105,6 +105,16 @@ struct SeedHistory {
     return number == other.number && needle == other.needle && dropped_s == other.dropped_s &&
            dropped_mm == other.dropped_mm;
   }
+  /// Divides the error of a seed that has just been left, by its places dropped and at rest, into aim, bend, relaxation
+  /// and motion. Strand, release, probe and wait are added later, where they move it.
+  /// @param aim_mm where a straight needle would have left it, less its planned place
+  /// @param lasting_mm displacement of its tissue that the tissue has crept into
+  void explain(const Vec3& aim_mm, const Vec3& lasting_mm) {
+    by(SeedCause::aim) = aim_mm;
+    by(SeedCause::bend) = dropped_mm - planned_mm - aim_mm;
+    by(SeedCause::relaxation) = -lasting_mm;
+    by(SeedCause::motion) = rest_mm - dropped_mm - by(SeedCause::relaxation);
+  }
   [[nodiscard]] Vec3 error_mm() const { return rest_mm - planned_mm; }
   [[nodiscard]] Vec3& by(SeedCause cause) { return cause_mm[static_cast<std::size_t>(cause)]; }
   [[nodiscard]] const Vec3& by(SeedCause cause) const { return cause_mm[static_cast<std::size_t>(cause)]; }
