@@ -203,51 +203,49 @@ void add_record(ImplantOutcome& outcome, const ImplantArguments& arguments, cons
 }
 
 Result<> run_implant(const ImplantArguments& arguments, Console& console) {
-  const Result<Scenario> scenario = read_scenario(arguments.scenario, arguments.settings);
-  if (!scenario) return scenario.error();
+  const auto scenario = need(read_scenario(arguments.scenario, arguments.settings));
   const std::filesystem::path folder =
       arguments.output.empty() ? std::filesystem::path("out") / std::filesystem::path(arguments.scenario).stem()
                                : std::filesystem::path(arguments.output);
-  if (Result<> writable = check_output_folder(folder); !writable) return writable;
-  if (Result<> kept = check_found_is_no_result(arguments.found, folder); !kept) return kept;
+  need(check_output_folder(folder));
+  need(check_found_is_no_result(arguments.found, folder));
   warn_before_start(arguments.scenario, arguments.settings, console);
-  Result<ImplantOutcome> outcome = implant(*scenario, arguments.scenario,
-                                           {.compensate = arguments.compensate,
-                                            .span = arguments.span,
-                                            .found = arguments.found,
-                                            .patient_from = arguments.patient_from},
-                                           console.progress());
-  if (!outcome) return outcome.error();
-  add_record(*outcome, arguments, *scenario);
-  for (const std::string& warning : outcome->warnings) console.warn(warning);
-  if (Result<> written = write_implant_results(*outcome, folder, console.progress()); !written) return written;
+  auto outcome = need(implant(scenario, arguments.scenario,
+                              {.compensate = arguments.compensate,
+                               .span = arguments.span,
+                               .found = arguments.found,
+                               .patient_from = arguments.patient_from},
+                              console.progress()));
+  add_record(outcome, arguments, scenario);
+  for (const std::string& warning : outcome.warnings) console.warn(warning);
+  need(write_implant_results(outcome, folder, console.progress()));
   double seconds = 0.0;
   long steps = 0;
-  for (const NeedleHistory& needle : outcome->history.needles) {
+  for (const NeedleHistory& needle : outcome.history.needles) {
     seconds += needle.seconds;
     steps += needle.steps;
   }
-  const bool temporary = is_temporary(*outcome);
-  console.say(fmt::format("{}: {} {}, {} {}, {} nodes; {} steps in {:.1f} s of processor time", scenario->name,
-                          outcome->history.needles.size(), temporary ? "catheters" : "needles",
-                          outcome->history.seeds.size(), temporary ? "dwell positions" : "seeds",
-                          outcome->history.nodes, steps, seconds));
-  console.say(patient_sentence(outcome->delivered.patient));
+  const bool temporary = is_temporary(outcome);
+  console.say(fmt::format("{}: {} {}, {} {}, {} nodes; {} steps in {:.1f} s of processor time", scenario.name,
+                          outcome.history.needles.size(), temporary ? "catheters" : "needles",
+                          outcome.history.seeds.size(), temporary ? "dwell positions" : "seeds", outcome.history.nodes,
+                          steps, seconds));
+  console.say(patient_sentence(outcome.delivered.patient));
   console.say(
       fmt::format("Distance of the {} from where they were planned (mean ± standard deviation along the axes)\n",
                   temporary ? "dwell positions" : "seeds") +
-      errors_text(*outcome));
-  console.say("Why\n" + causes_text(*outcome));
-  if (outcome->probe) {
+      errors_text(outcome));
+  console.say("Why\n" + causes_text(outcome));
+  if (outcome.probe) {
     std::string facts = "Probe";
-    for (const ProbeFact& fact : probe_facts(*outcome->probe)) facts += fmt::format("\n{}: {}", fact.name, fact.text);
+    for (const ProbeFact& fact : probe_facts(outcome.probe)) facts += fmt::format("\n{}: {}", fact.name, fact.text);
     console.say(facts);
   }
-  if (outcome->found) say_found(outcome->history, *outcome->found, console);
-  if (!outcome->delivered.goals.empty()) console.say(dose_text(*outcome));
-  if (temporary) console.say("Dose\n" + target_text(*outcome));
+  if (outcome.found) say_found(outcome.history, outcome.found, console);
+  if (!outcome.delivered.goals.empty()) console.say(dose_text(outcome));
+  if (temporary) console.say("Dose\n" + target_text(outcome));
   console.say(fmt::format("Report: {}", (folder / "report.html").string()));
-  const Json json = Json::parse(implant_json(*outcome));
+  const Json json = Json::parse(implant_json(outcome));
   return console.write_json(json);
 }
 
@@ -259,33 +257,23 @@ Command add_implant_command(CLI::App& program) {
                                          "Implant the seeds of a plan, or the catheters of an HDR plan: where seeds "
                                          "come to rest or dwell positions move, why, "
                                          "and the dose that they give");
-  app->add_option("SCENARIO", arguments->scenario,
-                  "Scenario file with a plan (TOML; stylet insert --print-schema lists its keys)")
-      ->type_name("SCENARIO.toml")
+  option(app, "SCENARIO", arguments->scenario, "SCENARIO.toml",
+         "Scenario file with a plan (TOML; stylet insert --print-schema lists its keys)")
       ->required();
-  app->add_option("-o,--output", arguments->output, "Folder for the results (default: out/NAME)")->type_name("OUT/");
-  app->add_option("--set", arguments->settings,
-                  "Set a key of the scenario, e.g. --set procedure.drop_speed_mm_per_s=10; may be repeated")
-      ->type_name("KEY=VALUE")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  app->add_option(
-         "--compensate", arguments->compensate,
+  option(app, "-o,--output", arguments->output, "OUT/", "Folder for the results (default: out/NAME)");
+  settings_option(app, arguments->settings, "procedure.drop_speed_mm_per_s=10");
+  option(app, "--compensate", arguments->compensate, "ROUNDS",
          "Aim the needles beside the plan so that their seeds come to rest where they were planned, correcting the "
          "aim this many times, and show before and after")
-      ->type_name("ROUNDS")
       ->check(CLI::Range(0, 20));
   app->add_flag("--span", arguments->span,
                 "Also implant in firm and in soft tissue, to show how sure the figures are; takes three times as long");
-  app->add_option(
-         "--found", arguments->found,
+  option(app, "--found", arguments->found, "SEEDS.csv|RTPLAN",
          "Seeds found on images after the implant, in the coordinates of the plan: match them with the simulated "
-         "seeds, and show how much of their errors the simulation explains")
-      ->type_name("SEEDS.csv|RTPLAN");
-  app->add_option("--patient-from", arguments->patient_from,
-                  "DICOM file whose patient, study, frame of reference and structure set the DICOM results get "
-                  "(default: those of plan and patient, where they agree)")
-      ->type_name("FILE");
+         "seeds, and show how much of their errors the simulation explains");
+  option(app, "--patient-from", arguments->patient_from, "FILE",
+         "DICOM file whose patient, study, frame of reference and structure set the DICOM results get "
+         "(default: those of plan and patient, where they agree)");
   return {app, [arguments](Console& console) { return run_implant(*arguments, console); }};
 }
 

@@ -24,8 +24,7 @@ struct Pressed {
 };
 
 Pressed press_skin(const std::string& method, int cells, const std::array<double, 3>& entry) {
-  Block block;
-  block.gland_radius_mm = 0.0;
+  Block block = Block::of_one_tissue();
   block.cells = {cells, cells, cells};
   block.entry_mm = entry;
   block.depth_mm = 5.0;

@@ -13,28 +13,10 @@ namespace stylet::validate {
 
 namespace {
 
-/// A block of one tissue, whose forces have closed forms.
-Block one_tissue() {
-  Block block;
-  block.gland_radius_mm = 0.0;
-  return block;
-}
-
-Curve force_curve(const Drive& drive, const std::string& label) {
-  return {.label = label,
-          .x = column(drive.steps(), &Step::base_depth_mm),
-          .y = column(drive.steps(), &Step::force_axial_N)};
-}
-
-/// Force against time, for motions in and out.
-Curve force_over_time(const Drive& drive, const std::string& label) {
-  return {.label = label, .x = column(drive.steps(), &Step::time_s), .y = column(drive.steps(), &Step::force_axial_N)};
-}
-
 double percent_off(double value, double expected) { return 100.0 * std::abs(value / expected - 1.0); }
 
 Finding steady_cutting(Context&) {
-  const auto model = need(one_tissue().compile());
+  const auto model = need(Block::of_one_tissue().compile());
   const RegionLaws& laws = model->laws().front();
   constexpr double speed = 10.0;
   const double along = laws.friction.coulomb_N_per_mm + laws.friction.viscous_Ns_per_mm2 * speed;
@@ -51,13 +33,12 @@ Finding steady_cutting(Context&) {
   }
   finding.note = "One tissue, constant speed, from 20 mm depth on. The formula uses the simulated inserted length.";
   finding.why_missed = "The force is not quite constant where contacts are laid.";
-  finding.plot = {
-      .x_label = "base depth [mm]", .y_label = "axial force [N]", .curves = {force_curve(drive, "ours"), law}};
+  finding.plot = {.x_label = "base depth [mm]", .y_label = "axial force [N]", .curves = {curve_of(drive, "ours"), law}};
   return finding;
 }
 
 Finding reversal(Context&) {
-  const auto model = need(one_tissue().compile());
+  const auto model = need(Block::of_one_tissue().compile());
   const FrictionLaw& friction = model->laws().front().friction;
   constexpr double speed = 20.0;
   Drive drive(model);
@@ -75,12 +56,13 @@ Finding reversal(Context&) {
       "The needle is pushed in with {:.2f} N. After 0.1 mm of retraction {} of {} contacts stick. After 10 mm all "
       "slip; the hand pulls with {:.3f} N, and the formula gives {:.3f} N.",
       pushing, sticking, contacts, -drive.last().record.force_axial_N, -expected);
-  finding.plot = {.x_label = "time [s]", .y_label = "axial force [N]", .curves = {force_over_time(drive, "ours")}};
+  finding.plot = {
+      .x_label = "time [s]", .y_label = "axial force [N]", .curves = {curve_of(drive, "ours", &Step::time_s)}};
   return finding;
 }
 
 Finding second_pass(Context&) {
-  const auto model = need(one_tissue().compile());
+  const auto model = need(Block::of_one_tissue().compile());
   const FrictionLaw& friction = model->laws().front().friction;
   constexpr double speed = 10.0;
   Drive drive(model);
@@ -99,7 +81,8 @@ Finding second_pass(Context&) {
       "{:g} mm of new track are cut.",
       drive.last().record.force_axial_N, expected, cut);
   drive.go(45.0, speed);
-  finding.plot = {.x_label = "time [s]", .y_label = "axial force [N]", .curves = {force_over_time(drive, "ours")}};
+  finding.plot = {
+      .x_label = "time [s]", .y_label = "axial force [N]", .curves = {curve_of(drive, "ours", &Step::time_s)}};
   return finding;
 }
 
@@ -127,7 +110,7 @@ Finding withdrawal(Context&) {
       "has the same forces as in fresh tissue; the value is the largest difference relative to the peak force.",
       left);
   finding.plot = {
-      .x_label = "base depth [mm]", .y_label = "axial force [N]", .curves = {force_curve(fresh, "fresh tissue")}};
+      .x_label = "base depth [mm]", .y_label = "axial force [N]", .curves = {curve_of(fresh, "fresh tissue")}};
   Curve second{.label = "second needle", .kind = Curve::Kind::reference};
   for (std::size_t i = from; i < used.steps().size(); ++i) {
     second.add(used.steps()[i].record.base_depth_mm, used.steps()[i].record.force_axial_N);
@@ -174,11 +157,10 @@ Finding moved_scene(Context&) {
 }
 
 Finding contact_changes(Context&) {
-  Block block = one_tissue();
+  Block block = Block::of_one_tissue();
   block.scenario.tissue_model.creep = 1.0;  // no creep, because relaxing forces would look like jumps
   block.direction = {0.1, 0.05, 1.0};
-  const auto model = need(block.compile());
-  Drive drive(model);
+  Drive drive(need(block.compile()));
   drive.go(30.0);
   drive.shift({0.6, 0.3, 0.0});
   drive.wait(0.01);
@@ -214,8 +196,7 @@ Finding contact_changes(Context&) {
 Finding energy(Context&) {
   Block block;
   block.direction = {0.05, 0.1, 1.0};
-  const auto model = need(block.compile());
-  Drive drive(model, 0.0);
+  Drive drive(need(block.compile()), 0.0);
   Finding finding{.value = 0.0};
   Curve work{.label = "work of the hand", .kind = Curve::Kind::reference};
   Curve stored{.label = "stored energy"};

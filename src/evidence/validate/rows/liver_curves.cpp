@@ -29,29 +29,17 @@ using Law = std::function<double(double)>;  ///< force [N] at a depth [mm]
 
 /// Presses the tip into liver with a modulus and a stiffening κ.
 Drive press(double young_kPa, double stiffening, double puncture_N) {
-  Block block;
-  block.scenario.tissue_model.preset = TissuePreset::linear;
-  block.gland_radius_mm = 0.0;
+  Block block = Block::of_one_tissue(TissuePreset::linear);
   TissueParameters& tissue = block.tissue("body");
   tissue.young_kPa = young_kPa;
   tissue.stiffening = stiffening;
   tissue.puncture_N = puncture_N;
-  const auto model = need(block.compile());
-  Drive drive(model, 0.0);
+  Drive drive(need(block.compile()), 0.0);
   drive.go(okamura::kPunctureDepth.mean + 2.0 * okamura::kPunctureDepth.deviation, okamura::kSpeed_mm_per_s, 20e-3);
   return drive;
 }
 
-Curve pressing_curve(const Drive& drive, std::string label) {
-  return {.label = std::move(label),
-          .x = column(drive.steps(), &Step::base_depth_mm),
-          .y = column(drive.steps(), &Step::force_axial_N)};
-}
-
-Curve unbroken(double stiffening) {
-  const auto drive = press(kReference_kPa, stiffening, kUnbreakable_N);
-  return pressing_curve(drive, "");
-}
+Curve unbroken(double stiffening) { return curve_of(press(kReference_kPa, stiffening, kUnbreakable_N), ""); }
 
 double at(const Curve& curve, double depth_mm) { return interpolated(curve.x, curve.y, depth_mm); }
 
@@ -127,7 +115,7 @@ Finding liver_curve(Context&) {
   const auto drive = press(fit.young_kPa, fit.stiffening, okamura::kPuncture.mean);
   const auto whole = press(fit.young_kPa, fit.stiffening, kUnbreakable_N);
   const auto straight = unbroken(0.0);
-  const Curve law = pressing_curve(whole, "stiffening dent");
+  const Curve law = curve_of(whole, "stiffening dent");
   double linear_kPa = 0.0;
   const Curve linear = scaled_to(published, straight, "linear tissue", linear_kPa);
   const double off = rms_percent(law, published);

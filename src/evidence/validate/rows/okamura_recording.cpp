@@ -76,9 +76,7 @@ OkamuraRecording read_recording_of(const std::filesystem::path& file) {
 
 /// Simulates the insertion with published parameters and the two fitted ones.
 Curve simulate(double young_kPa, double puncture_N, double depth_mm) {
-  Block block;
-  block.scenario.tissue_model.preset = TissuePreset::linear;
-  block.gland_radius_mm = 0.0;
+  Block block = Block::of_one_tissue(TissuePreset::linear);
   TissueParameters& tissue = block.tissue("body");
   tissue.young_kPa = young_kPa;
   tissue.puncture_N = puncture_N;
@@ -86,12 +84,9 @@ Curve simulate(double young_kPa, double puncture_N, double depth_mm) {
   tissue.friction_static_N_per_m = okamura::kStatic_N_per_m;
   tissue.friction_coulomb_N_per_m = okamura::kCoulomb_N_per_m;
   tissue.friction_viscous_Ns_per_m2 = okamura::kViscous_Ns_per_m2;
-  const auto model = need(block.compile());
-  Drive drive(model, 0.0);
+  Drive drive(need(block.compile()), 0.0);
   drive.go(depth_mm, okamura::kSpeed_mm_per_s, 10e-3);
-  return Curve{.label = "simulated",
-               .x = column(drive.steps(), &Step::base_depth_mm),
-               .y = column(drive.steps(), &Step::force_axial_N)};
+  return curve_of(drive, "simulated");
 }
 
 double rms(const OkamuraRecording& recording, const Curve& curve) {

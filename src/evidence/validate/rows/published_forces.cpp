@@ -18,9 +18,7 @@ using namespace published;
 
 /// A block of one tissue with the values that Okamura et al. measured in liver.
 Block liver() {
-  Block block;
-  block.scenario.tissue_model.preset = TissuePreset::linear;
-  block.gland_radius_mm = 0.0;
+  Block block = Block::of_one_tissue(TissuePreset::linear);
   TissueParameters& tissue = block.tissue("body");
   tissue.young_kPa = okamura::modulus_kPa(block.scenario.needle.diameter_mm, tissue.poisson);
   tissue.puncture_N = okamura::kPuncture.mean;
@@ -31,16 +29,9 @@ Block liver() {
   return block;
 }
 
-Curve force_curve(const Drive& drive) {
-  return {.label = "ours",
-          .x = column(drive.steps(), &Step::base_depth_mm),
-          .y = column(drive.steps(), &Step::force_axial_N)};
-}
-
 /// Inserts a needle at 3 mm/s until 8 mm beyond the puncture.
 Drive puncture_liver() {
-  const auto model = need(liver().compile());
-  Drive drive(model);
+  Drive drive(need(liver().compile()));
   double stop = 50.0;
   for (double depth = 0.5; depth <= stop; depth += 0.5) {
     drive.go(depth, okamura::kSpeed_mm_per_s, 5e-3);
@@ -64,14 +55,12 @@ Finding liver_puncture_drop(Context&) {
   finding.why_missed =
       "The force falls to the cutting force. The study’s puncture force (2.30 N) and cutting force (0.94 N, from other "
       "insertions) differ by more than its mean drop.";
-  finding.plot = {.x_label = "base depth [mm]", .y_label = "axial force [N]", .curves = {force_curve(drive)}};
+  finding.plot = {.x_label = "base depth [mm]", .y_label = "axial force [N]", .curves = {curve_of(drive, "ours")}};
   return finding;
 }
 
 Finding gel_force(Context&) {
-  Block block;
-  block.scenario.tissue_model.preset = TissuePreset::linear;
-  block.gland_radius_mm = 0.0;
+  Block block = Block::of_one_tissue(TissuePreset::linear);
   TissueParameters& tissue = block.tissue("body");
   tissue.young_kPa = dimaio::kYoung_kPa;
   tissue.poisson = dimaio::kPoisson;
@@ -80,8 +69,7 @@ Finding gel_force(Context&) {
   tissue.friction_coulomb_N_per_m = tissue.friction_static_N_per_m = dimaio::kFriction_N_per_m;
   tissue.friction_viscous_Ns_per_m2 = 0.0;
   block.depth_mm = dimaio::kDepth_mm;
-  const auto model = need(block.compile());
-  Drive drive(model);
+  Drive drive(need(block.compile()));
   drive.go(dimaio::kDepth_mm, dimaio::kSpeed_mm_per_s, 20e-3);
   Finding finding;
   finding.value = drive.last().record.force_axial_N;
@@ -92,7 +80,7 @@ Finding gel_force(Context&) {
   finding.plot = {
       .x_label = "base depth [mm]",
       .y_label = "axial force [N]",
-      .curves = {force_curve(drive),
+      .curves = {curve_of(drive, "ours"),
                  {.label = "measured, approximate", .x = {11, 70}, .y = {0.7, 2.3}, .kind = Curve::Kind::reference}}};
   return finding;
 }

@@ -51,11 +51,9 @@ struct Drag {
   unsigned flags = 0;
 };
 Drag drag(double tolerance, double dt_s) {
-  Block block;
-  block.gland_radius_mm = 0.0;
+  Block block = Block::of_one_tissue();
   block.scenario.coupling.tolerance = tolerance;
-  const auto model = need(block.compile());
-  Drive drive(model);
+  Drive drive(need(block.compile()));
   drive.go(40.0, 20.0, dt_s);
   return Drag{drive.insertion().displacement().cwiseAbs().maxCoeff(), drive.flags()};
 }

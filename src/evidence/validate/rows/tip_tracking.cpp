@@ -58,10 +58,9 @@ TipRecording read(const std::filesystem::path& file) {
 
 /// Lateral position of the simulated tip, every 5 mm of depth.
 std::vector<double> simulate(double bevel_deg) {
-  Block block;
+  Block block = Block::of_one_tissue();
   block.hi.z() = 125.0;
   block.cells[2] = 10;
-  block.gland_radius_mm = 0.0;
   block.depth_mm = kDeepest_mm;
   block.scenario.needle.bevel_deg = bevel_deg;
   const auto model = need(block.compile());

@@ -19,9 +19,7 @@ constexpr double kPressSpeed_mm_per_s = 4.0;
 constexpr double kDent_mm = 4.0;
 
 std::shared_ptr<const Model> block(double creep, double puncture_N) {
-  Block block;
-  block.scenario.tissue_model.preset = TissuePreset::linear;
-  block.gland_radius_mm = 0.0;
+  Block block = Block::of_one_tissue(TissuePreset::linear);
   block.scenario.tissue_model.creep = creep;
   block.scenario.tissue_model.creep_s = kTau_s;
   block.tissue("body").puncture_N = puncture_N;

@@ -2,7 +2,6 @@
 #include "report/report_html.hpp"
 
 #include "fixed_number.hpp"
-#include "report/assets.hpp"
 #include "report/gland_section.hpp"
 #include "report/map_section.hpp"
 #include "report/narrative.hpp"
@@ -151,11 +150,11 @@ Result<std::string> report_html(const RunRecording& run, std::span<const RegionV
     if (std::find(warnings.begin(), warnings.end(), w) == warnings.end()) warnings.push_back(w);
   }
   const Slots slots{
-      {"version", html_escaped(run.info.version)},
-      {"title", html_escaped(run.info.scenario_name)},
+      {"title", html_escaped(run.info.scenario_name) + " – needle insertion report"},
+      {"heading", html_escaped(run.info.scenario_name)},
+      {"kicker", "Needle insertion report"},
       {"facts",
        html_escaped(fmt::format("{}, {} nodes, {} steps", run.info.method, run.mesh.nodes.size(), run.summary->steps))},
-      {"css", std::string(report_css())},
       {"story", story},
       {"tiles", tiles(run, run.frames[moments.deepest])},
       {"warnings", warning_box(warnings)},
@@ -170,10 +169,10 @@ Result<std::string> report_html(const RunRecording& run, std::span<const RegionV
       {"parameters", parameter_tables(run.info.parameters)},
       {"scenario", html_escaped(run.info.scenario_text)},
       {"versions", versions(run)},
+      {"data_id", "report-data"},
       {"data", json_script_safe(report_data(run, regions, moments, map))},
-      {"js", script_safe(report_js())},
   };
-  return fill_page(report_template(), slots, "report.html");
+  return whole_page(report_assets(), slots, "report.html");
 }
 
 }  // namespace stylet::results
