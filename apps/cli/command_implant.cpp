@@ -238,10 +238,10 @@ Result<> run_implant(const ImplantArguments& arguments, Console& console) {
   console.say("Why\n" + causes_text(outcome));
   if (outcome.probe) {
     std::string facts = "Probe";
-    for (const ProbeFact& fact : probe_facts(outcome.probe)) facts += fmt::format("\n{}: {}", fact.name, fact.text);
+    for (const ProbeFact& fact : probe_facts(*outcome.probe)) facts += fmt::format("\n{}: {}", fact.name, fact.text);
     console.say(facts);
   }
-  if (outcome.found) say_found(outcome.history, outcome.found, console);
+  if (outcome.found) say_found(outcome.history, *outcome.found, console);
   if (!outcome.delivered.goals.empty()) console.say(dose_text(outcome));
   if (temporary) console.say("Dose\n" + target_text(outcome));
   console.say(fmt::format("Report: {}", (folder / "report.html").string()));

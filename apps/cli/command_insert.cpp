@@ -260,11 +260,11 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
                           summary.tets, prepared.model->info().method));
   if (result.probe) {
     Facts probe;
-    for (const ProbeFact& fact : probe_facts(result.probe)) probe.add(fact.name, fact.text);
+    for (const ProbeFact& fact : probe_facts(*result.probe)) probe.add(fact.name, fact.text);
     console.say(probe.text() + "\n");
   }
   console.say(summary_text(summary));
-  if (result.map) console.say("\n" + map_text(result.map));
+  if (result.map) console.say("\n" + map_text(*result.map));
   if (repeats) console.say("Repeated the recording: " + compare_forces(source.steps, result.steps) + ".");
   console.say(fmt::format("Report: {}", (folder / "report.html").string()));
   return console.write_json(result_json(folder, result.map));

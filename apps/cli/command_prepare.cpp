@@ -55,7 +55,7 @@ Result<> run_prepare(const PrepareArguments& arguments, Console& console) {
   need(check_output_file(output));
   warn_before_start(arguments.scenario, arguments.settings, console);
   const auto prepared = need(prepare_model_file(arguments.scenario, arguments.settings, console.progress()));
-  const Model& model = prepared.model;
+  const Model& model = *prepared.model;
   const auto start = std::chrono::steady_clock::now();
   need(make_folder(output.has_parent_path() ? output.parent_path() : "."));
   need(save_model(model, output, prepared.notes, console.progress()));

@@ -127,7 +127,7 @@ Result<> run_validate(const ValidateArguments& arguments, Console& console) {
       console.say(fmt::format("\nMISSED {}: {}. {}", row.spec.id, row.spec.claim, row.note()));
     if (row.verdict == Verdict::skipped) console.say(fmt::format("\nskipped {}: {}", row.spec.id, row.note()));
   }
-  if (validation.sensitivity) console.say("\n" + sensitivity_text(validation.sensitivity));
+  if (validation.sensitivity) console.say("\n" + sensitivity_text(*validation.sensitivity));
   console.say(fmt::format("\nPage: {}", (folder / "validate.html").string()));
   need(console.write_json(Json::parse(validate::validation_json(validation))));
   for (const Row& row : validation.rows) {
