@@ -187,18 +187,13 @@ void print(const DoseEvaluation& e, Console& console) {
 
 /// The files that the dose was computed from.
 std::vector<DoseInput> inputs_of(const DoseArguments& arguments) {
-  std::vector<DoseInput> inputs;
-  const auto add = [&](const char* role, const std::string& path) {
-    std::error_code code;
-    if (!path.empty() && fs::exists(path, code)) inputs.push_back(dose_input(role, path));
-  };
-  add("plan", arguments.plan);
-  add("structures", arguments.structures);
-  for (const std::string& source : arguments.sources) add("source model", source.substr(source.find('=') + 1));
-  add("compared dose", arguments.compare);
-  add("points", arguments.points);
-  add("goals", arguments.goals);
-  return inputs;
+  std::vector<std::pair<std::string, std::string>> files{{"plan", arguments.plan},
+                                                         {"structures", arguments.structures}};
+  for (const std::string& source : arguments.sources)
+    files.emplace_back("source model", source.substr(source.find('=') + 1));
+  files.insert(files.end(),
+               {{"compared dose", arguments.compare}, {"points", arguments.points}, {"goals", arguments.goals}});
+  return dose_inputs(files);
 }
 
 Result<> run_dose(const DoseArguments& arguments, Console& console) {

@@ -30,14 +30,21 @@ struct ImplantArguments {
 
 bool is_temporary(const ImplantOutcome& outcome) { return implant_of(outcome.history.seeds) == Implant::temporary; }
 
+std::vector<std::string> error_cells(const std::string& name, const SeedErrors& e) {
+  const auto axis = [](const SeedErrors::Axis& a) { return fmt::format("{:.2f} ± {:.2f}", a.mean_mm, a.sd_mm); };
+  return {name,
+          fmt::format("{}", e.seeds),
+          fmt::format("{:.2f}", e.mean_mm),
+          fmt::format("{:.2f}", e.p95_mm),
+          axis(e.axes[0]),
+          axis(e.axes[1]),
+          axis(e.axes[2])};
+}
+
 std::string errors_text(const ImplantOutcome& outcome) {
   Table table({is_temporary(outcome) ? "dwell positions" : "seeds", "number", "mean [mm]", "95 % [mm]", "left [mm]",
                "posterior [mm]", "superior [mm]"});
-  const auto row = [&](const std::string& name, const SeedErrors& e) {
-    const auto axis = [](const SeedErrors::Axis& a) { return fmt::format("{:.2f} ± {:.2f}", a.mean_mm, a.sd_mm); };
-    table.row({name, fmt::format("{}", e.seeds), fmt::format("{:.2f}", e.mean_mm), fmt::format("{:.2f}", e.p95_mm),
-               axis(e.axes[0]), axis(e.axes[1]), axis(e.axes[2])});
-  };
+  const auto row = [&](const std::string& name, const SeedErrors& e) { table.row(error_cells(name, e)); };
   if (outcome.before) row(outcome.before->name, seed_errors(outcome.before->history.seeds));
   if (outcome.at_planning) row(outcome.at_planning->name, seed_errors(outcome.at_planning->history.seeds));
   row(outcome.before        ? "after compensation"
@@ -119,11 +126,7 @@ std::string target_text(const ImplantOutcome& outcome) {
 /// The errors of the seeds that were found, beside those of the simulation.
 std::string found_errors_text(const FoundComparison& comparison) {
   Table table({"errors", "number", "mean [mm]", "95 % [mm]", "left [mm]", "posterior [mm]", "superior [mm]"});
-  const auto row = [&](const std::string& name, const SeedErrors& e) {
-    const auto axis = [](const SeedErrors::Axis& a) { return fmt::format("{:.2f} ± {:.2f}", a.mean_mm, a.sd_mm); };
-    table.row({name, fmt::format("{}", e.seeds), fmt::format("{:.2f}", e.mean_mm), fmt::format("{:.2f}", e.p95_mm),
-               axis(e.axes[0]), axis(e.axes[1]), axis(e.axes[2])});
-  };
+  const auto row = [&](const std::string& name, const SeedErrors& e) { table.row(error_cells(name, e)); };
   row("found − planned", comparison.as_found.error);
   row("found − simulated", comparison.as_found.remainder);
   row("found − planned, without common shift", comparison.without_shift.error);
@@ -183,17 +186,12 @@ Result<> check_found_is_no_result(const std::filesystem::path& found, const std:
 
 /// Tells all doses when and from which files they were computed.
 void add_record(ImplantOutcome& outcome, const ImplantArguments& arguments, const Scenario& scenario) {
-  std::vector<DoseInput> inputs;
-  const auto add = [&](const char* role, const std::string& path) {
-    std::error_code code;
-    if (!path.empty() && std::filesystem::exists(path, code)) inputs.push_back(dose_input(role, path));
-  };
-  add("scenario", arguments.scenario);
-  add("plan", scenario.plan.file);
-  add("patient", scenario.patient.source);
-  add("source model", scenario.plan.source);
-  add("goals", scenario.plan.goals);
-  add("found seeds", arguments.found);
+  const std::vector<DoseInput> inputs = dose_inputs({{"scenario", arguments.scenario},
+                                                     {"plan", scenario.plan.file},
+                                                     {"patient", scenario.patient.source},
+                                                     {"source model", scenario.plan.source},
+                                                     {"goals", scenario.plan.goals},
+                                                     {"found seeds", arguments.found}});
   std::vector<DoseEvaluation*> doses{&outcome.planned, &outcome.delivered};
   if (outcome.found) doses.push_back(&outcome.found->dose);
   for (DoseEvaluation* dose : doses) {
@@ -204,9 +202,7 @@ void add_record(ImplantOutcome& outcome, const ImplantArguments& arguments, cons
 
 Result<> run_implant(const ImplantArguments& arguments, Console& console) {
   const auto scenario = need(read_scenario(arguments.scenario, arguments.settings));
-  const std::filesystem::path folder =
-      arguments.output.empty() ? std::filesystem::path("out") / std::filesystem::path(arguments.scenario).stem()
-                               : std::filesystem::path(arguments.output);
+  const std::filesystem::path folder = result_folder(arguments.output, arguments.scenario);
   need(check_output_folder(folder));
   need(check_found_is_no_result(arguments.found, folder));
   warn_before_start(arguments.scenario, arguments.settings, console);

@@ -228,9 +228,7 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
   }
   if (arguments.scenario.empty())
     return input_error("insert", "no scenario is given", "Give a scenario file, for example scenarios/demo.toml");
-  const std::filesystem::path folder =
-      arguments.output.empty() ? std::filesystem::path("out") / std::filesystem::path(arguments.scenario).stem()
-                               : std::filesystem::path(arguments.output);
+  const std::filesystem::path folder = result_folder(arguments.output, arguments.scenario);
   need(check_output_folder(folder));
   if (arguments.map && is_recording(arguments.scenario)) {
     return input_error(arguments.scenario,

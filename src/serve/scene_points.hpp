@@ -5,6 +5,9 @@
 
 namespace stylet::serve {
 
+/// All nodes of a mesh as surface points.
+std::vector<SurfacePoint> nodes_as_points(const TetMesh& mesh);
+
 /// The points of a scene: nodes of the mesh, then points between them where surfaces are refined.
 struct ScenePoints {
   std::vector<Index> nodes;         ///< node indices of the mesh

@@ -55,8 +55,8 @@ Plot path_plot(const RecordedRun& run) {
 }
 
 Finding gland_shift(Context& context, Patients& patients, PatientCase patient) {
-  const auto run = need(patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s}));
-  const auto slow = need(patients.run(context, patient, {.speed_mm_per_s = kSlow_mm_per_s}));
+  const auto run = patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s});
+  const auto slow = patients.run(context, patient, {.speed_mm_per_s = kSlow_mm_per_s});
   Finding finding;
   finding.value = norm_at_break(*run);
   finding.note = fmt::format(
@@ -69,7 +69,7 @@ Finding gland_shift(Context& context, Patients& patients, PatientCase patient) {
 }
 
 Finding gland_turn(Context& context, Patients& patients, PatientCase patient) {
-  const auto run = need(patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s}));
+  const auto run = patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s});
   Finding finding;
   if (!run->summary.gland) return finding;
   const PlaneAngles turn = plane_angles(run->summary.gland->rotation_deg);
@@ -83,7 +83,7 @@ Finding gland_turn(Context& context, Patients& patients, PatientCase patient) {
 }
 
 Finding peak_force(Context& context, Patients& patients, PatientCase patient) {
-  const auto run = need(patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s}));
+  const auto run = patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s});
   Finding finding;
   finding.value = run->summary.peak_axial_N;
   finding.note =
@@ -94,7 +94,7 @@ Finding peak_force(Context& context, Patients& patients, PatientCase patient) {
 }
 
 Finding skin_force(Context& context, Patients& patients, PatientCase patient) {
-  const auto run = need(patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s}));
+  const auto run = patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s});
   Finding finding;
   if (const Event* skin = skin_break(*run)) finding.value = skin->force_N;
   finding.note =
@@ -104,8 +104,8 @@ Finding skin_force(Context& context, Patients& patients, PatientCase patient) {
 }
 
 Finding skin_dent(Context& context, Patients& patients, PatientCase patient) {
-  const auto run = need(patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s}));
-  const auto slow = need(patients.run(context, patient, {.speed_mm_per_s = kSlow_mm_per_s}));
+  const auto run = patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s});
+  const auto slow = patients.run(context, patient, {.speed_mm_per_s = kSlow_mm_per_s});
   const auto dent = [](const RecordedRun& r) {
     const Event* contact = r.event(EventKind::skin_contact);
     const Event* skin = skin_break(r);
@@ -121,7 +121,7 @@ Finding skin_dent(Context& context, Patients& patients, PatientCase patient) {
 }
 
 Finding force_slope(Context& context, Patients& patients, PatientCase patient) {
-  const auto run = need(patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s}));
+  const auto run = patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s});
   Finding finding;
   const Event* skin = skin_break(*run);
   if (skin == nullptr) return finding;
@@ -144,7 +144,7 @@ Finding force_slope(Context& context, Patients& patients, PatientCase patient) {
 }
 
 Finding gland_seat(Context& context, Patients& patients, PatientCase patient) {
-  const auto run = need(patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s}));
+  const auto run = patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s});
   const double at_once = seat_N_per_mm(*run->model);
   const double creep = creep_of(run->model->scenario());
   Finding finding;
@@ -162,9 +162,9 @@ Finding speed_ratio(Context& context, Patients& patients, PatientCase patient) {
   Curve creeping{.label = "default tissue"};
   Curve elastic{.label = "null model: without creep", .kind = Curve::Kind::reference};
   for (const double speed : {kSlow_mm_per_s, kUsual_mm_per_s, kFast_mm_per_s}) {
-    const auto run = need(patients.run(context, patient, {.speed_mm_per_s = speed}));
+    const auto run = patients.run(context, patient, {.speed_mm_per_s = speed});
     creeping.add(speed, norm_at_break(*run));
-    const auto null = need(patients.run(context, patient, {.speed_mm_per_s = speed, .creeps = false}));
+    const auto null = patients.run(context, patient, {.speed_mm_per_s = speed, .creeps = false});
     elastic.add(speed, norm_at_break(*null));
   }
   const double ratio = creeping.y.back() / creeping.y.front();
@@ -194,7 +194,7 @@ Finding axis_ratio(Context& context, Patients& patients, PatientCase patient) {
                               Curve{.label = "anterior or posterior", .kind = Curve::Kind::points},
                               Curve{.label = "along the needle", .kind = Curve::Kind::points}};
   for (std::size_t k = 0; k < holes.size(); ++k) {
-    const auto run = need(patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s, .hole = holes[k]}));
+    const auto run = patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s, .hole = holes[k]});
     if (!run->summary.gland) return Finding{.note = "The patient has no gland."};
     const Vec3 shift = run->summary.gland->shift_max_mm.cwiseAbs();
     mean += shift / static_cast<double>(holes.size());
@@ -227,7 +227,7 @@ Finding bevel_deflection(Context& context, Patients& patients, PatientCase patie
   constexpr double depth_mm = 95.0;
   const auto deflection_with = [&](double bevel_deg) {
     const PatientRun how{.speed_mm_per_s = kUsual_mm_per_s, .depth_mm = depth_mm, .bevel_deg = bevel_deg};
-    return need(patients.run(context, patient, how))->summary.tip_deflection_mm;
+    return patients.run(context, patient, how)->summary.tip_deflection_mm;
   };
   const double deflection = deflection_with(20.0), symmetric = deflection_with(0.0);
   Finding finding;
