@@ -2,6 +2,7 @@
 #pragma once
 
 #include "stylet/geom/fine_surface.hpp"
+#include "stylet/geom/tet_mesh.hpp"
 
 namespace stylet::serve {
 
