@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One script and one style sheet for each page, which the stylet program carries inside:
 //   vite build --mode live          the page of stylet serve
-//   vite build --mode live-fake     the same, with a made-up server inside: open it with ?fake
 //   vite build --mode report        the report of an insertion
 //   vite build --mode dose          the report of stylet dose
 //   vite build --mode implant       the report of stylet implant
@@ -11,7 +10,6 @@ import { defineConfig } from 'vite';
 
 const ENTRIES: Record<string, string> = {
   live: 'live/src/main.ts',
-  'live-fake': 'live/src/main.ts',
   report: 'report/src/main.ts',
   dose: 'report/src/dose/main.ts',
   implant: 'report/src/implant/main.ts',
@@ -23,7 +21,6 @@ export default defineConfig(({ mode }) => {
   const entry = ENTRIES[mode];
   if (!entry) throw new Error(`There is no page "${mode}": --mode takes ${Object.keys(ENTRIES).join(', ')}`);
   return {
-    define: { __FAKE_SERVER__: JSON.stringify(mode === 'live-fake') },
     build: {
       target: 'es2020',
       cssCodeSplit: false,

@@ -41,7 +41,7 @@ Result<> check_options(const BenchArguments& arguments) {
 }
 
 Result<> run_bench(const BenchArguments& arguments, Console& console) {
-  if (auto checked = check_options(arguments); !checked) return checked;
+  need(check_options(arguments));
   if (arguments.what == "scale") return bench_scale_command(arguments, console);
   if (arguments.what == "pictures") return bench_pictures_command(arguments, console);
   if (arguments.what == "dose") return bench_dose_command(arguments, console);
@@ -88,25 +88,20 @@ Command add_bench_command(CLI::App& program) {
          "points, by the formula and by a table")
       ->required()
       ->check(one_of({"remesh", "scale", "together", "pictures", "dose"}));
-  app->add_option(
-         "--nodes", arguments->nodes,
+  option(app, "--nodes", arguments->nodes, "N",
          fmt::format("Nodes of the largest mesh: remesh 125 to 4096 (default {}), scale 570 or more (default "
                      "{}), pictures 3000 or more (default {})",
                      kRemeshNodes, measure::ScaleBenchOptions{}.largest, measure::PicturesBenchOptions{}.largest))
-      ->type_name("N")
       ->check(whole_number_between(1, 1000000));
-  app->add_option("--contacts", arguments->contacts,
-                  "scale: approximate number of contacts (default: one after the other 20, 40 and 60)")
-      ->type_name("N")
+  option(app, "--contacts", arguments->contacts, "N",
+         "scale: approximate number of contacts (default: one after the other 20, 40 and 60)")
       ->check(whole_number_between(5, measure::most_driven_contacts()));
-  app->add_option("--needles", arguments->needles,
-                  fmt::format("together: largest number of needles at rest (default {})",
-                              measure::TogetherBenchOptions{}.needles))
-      ->type_name("N")
+  option(
+      app, "--needles", arguments->needles, "N",
+      fmt::format("together: largest number of needles at rest (default {})", measure::TogetherBenchOptions{}.needles))
       ->check(whole_number_between(1, measure::kMostAtRest));
-  app->add_option("--steps", arguments->steps,
-                  "scale: repeat insertion and withdrawal until each row has this number of steps (default: once)")
-      ->type_name("N")
+  option(app, "--steps", arguments->steps, "N",
+         "scale: repeat insertion and withdrawal until each row has this number of steps (default: once)")
       ->check(whole_number_between(1, 100000000));
   return {app, [arguments](Console& console) { return run_bench(*arguments, console); }};
 }

@@ -36,7 +36,7 @@ struct DoseArguments {
   bool ignore_frame = false, compare_anyway = false;
 };
 
-Result<DoseOptions> options_of(const DoseArguments& arguments, const DosePlan& plan) {
+DoseOptions options_of(const DoseArguments& arguments, const DosePlan& plan) {
   DoseOptions options;
   for (const DoseFormalism formalism : {DoseFormalism::line2d, DoseFormalism::line1d, DoseFormalism::point}) {
     if (arguments.formalism == to_string(formalism)) options.formalism = formalism;
@@ -44,24 +44,20 @@ Result<DoseOptions> options_of(const DoseArguments& arguments, const DosePlan& p
   if (arguments.quantity == "rate") options.quantity = DoseQuantity::initial_rate;
   if (arguments.days > 0) options.quantity = DoseQuantity::until;
   if (arguments.days > 0 && arguments.quantity == "rate")
-    return input_error("--days", "a dose rate has no duration", "Leave out --days or --quantity rate");
+    throw Failed{input_error("--days", "a dose rate has no duration", "Leave out --days or --quantity rate")};
   if (plan.implant == Implant::temporary && (arguments.days > 0 || arguments.quantity == "rate"))
-    return input_error(arguments.plan, "the plan is a temporary implant, which has its total dose only",
-                       "Leave out --days and --quantity");
+    throw Failed{input_error(arguments.plan, "the plan is a temporary implant, which has its total dose only",
+                             "Leave out --days and --quantity")};
   options.days = arguments.days;
   options.decay_days = arguments.decay_days;
   options.compare_anyway = arguments.compare_anyway;
   options.prescription_Gy = arguments.prescription_Gy;
   options.grid_step_mm = arguments.grid_mm;
   if (!arguments.points.empty()) {
-    Result<std::vector<Vec3>> points = read_points(arguments.points);
-    if (!points) return points.error();
-    options.points = std::move(*points);
+    options.points = need(read_points(arguments.points));
   }
   if (!arguments.goals.empty()) {
-    Result<std::vector<DoseGoal>> goals = read_goals(arguments.goals);
-    if (!goals) return goals.error();
-    options.goals = std::move(*goals);
+    options.goals = need(read_goals(arguments.goals));
   } else if (plan.implant == Implant::permanent) {
     const auto own = permanent_prostate_goals();
     options.goals.assign(own.begin(), own.end());
@@ -70,13 +66,13 @@ Result<DoseOptions> options_of(const DoseArguments& arguments, const DosePlan& p
 }
 
 /// The source models of the plan, with the constant anisotropy that the user may give.
-Result<std::vector<SourceModel>> sources_of(const DoseArguments& arguments, const DosePlan& plan) {
-  Result<std::vector<SourceModel>> sources = choose_sources(arguments.sources, plan);
-  if (!sources || arguments.phi_an <= 0) return sources;
+std::vector<SourceModel> sources_of(const DoseArguments& arguments, const DosePlan& plan) {
+  auto sources = need(choose_sources(arguments.sources, plan));
+  if (arguments.phi_an <= 0) return sources;
   if (arguments.formalism.empty() || arguments.formalism == "line2d")
-    return input_error("--phi-an", "the formalism line2d has no 1D anisotropy",
-                       "Add --formalism line1d or --formalism point, or leave --phi-an out");
-  for (SourceModel& source : *sources) {
+    throw Failed{input_error("--phi-an", "the formalism line2d has no 1D anisotropy",
+                             "Add --formalism line1d or --formalism point, or leave --phi-an out")};
+  for (SourceModel& source : sources) {
     source.phi_r_mm = {Tg43::kReference_mm};
     source.phi = {arguments.phi_an};
   }
@@ -85,36 +81,34 @@ Result<std::vector<SourceModel>> sources_of(const DoseArguments& arguments, cons
 
 /// @param own_goals whether the program's own goals are judged, which are those of prostate implants: only then does it
 ///   matter whether the target is a prostate
-Result<DoseStructures> structures_of(const DoseArguments& arguments, const DosePlan& plan, bool own_goals,
-                                     Console& console) {
+DoseStructures structures_of(const DoseArguments& arguments, const DosePlan& plan, bool own_goals, Console& console) {
   if (arguments.structures.empty()) return DoseStructures{};
-  const Result<PatientInput> input = read_input(arguments.structures, {}, {}, arguments.skip);
-  if (!input) return input.error();
+  const auto input = need(read_input(arguments.structures, {}, {}, arguments.skip));
   DoseStructureOptions options;
   options.skip = arguments.skip;
   options.step_mm = arguments.step_mm;
   for (const std::string& argument : arguments.regions) {
     const std::size_t split = argument.rfind('=');
     if (split == std::string::npos || split == 0 || split + 1 == argument.size())
-      return input_error(fmt::format("--region {}", argument), "NAME=CANONICAL is expected",
-                         "Write e.g. --region 'PTV 1=prostate'");
+      throw Failed{input_error(fmt::format("--region {}", argument), "NAME=CANONICAL is expected",
+                               "Write e.g. --region 'PTV 1=prostate'")};
     options.regions[argument.substr(0, split)] = argument.substr(split + 1);
   }
-  Result<DoseStructures> structures = dose_structures(*input, options, console.progress());
-  if (!structures) return structures;
+  auto structures = need(dose_structures(input, options, console.progress()));
   if (own_goals) {
     FitOptions fit;
     fit.names.regions = options.regions;
     fit.names.skip = options.skip;
-    for (const FitFinding& finding : judge_fit(*input, fit)) structures->notes.push_back(finding.message());
+    for (const FitFinding& finding : judge_fit(input, fit)) structures.notes.push_back(finding.message());
   }
-  if (!arguments.ignore_frame && !structures->frame_of_reference.empty() && !plan.frame_of_reference.empty() &&
-      structures->frame_of_reference != plan.frame_of_reference) {
-    return input_error(arguments.structures,
-                       fmt::format("the structures have the frame of reference {}, the plan has {}",
-                                   structures->frame_of_reference, plan.frame_of_reference),
-                       "Give the structure set of this plan, or add --ignore-frame-of-reference if both have the same "
-                       "coordinates nevertheless");
+  if (!arguments.ignore_frame && !structures.frame_of_reference.empty() && !plan.frame_of_reference.empty() &&
+      structures.frame_of_reference != plan.frame_of_reference) {
+    throw Failed{
+        input_error(arguments.structures,
+                    fmt::format("the structures have the frame of reference {}, the plan has {}",
+                                structures.frame_of_reference, plan.frame_of_reference),
+                    "Give the structure set of this plan, or add --ignore-frame-of-reference if both have the same "
+                    "coordinates nevertheless")};
   }
   return structures;
 }
@@ -193,78 +187,64 @@ void print(const DoseEvaluation& e, Console& console) {
 
 /// The files that the dose was computed from.
 std::vector<DoseInput> inputs_of(const DoseArguments& arguments) {
-  std::vector<DoseInput> inputs;
-  const auto add = [&](const char* role, const std::string& path) {
-    std::error_code code;
-    if (!path.empty() && fs::exists(path, code)) inputs.push_back(dose_input(role, path));
-  };
-  add("plan", arguments.plan);
-  add("structures", arguments.structures);
-  for (const std::string& source : arguments.sources) add("source model", source.substr(source.find('=') + 1));
-  add("compared dose", arguments.compare);
-  add("points", arguments.points);
-  add("goals", arguments.goals);
-  return inputs;
+  std::vector<std::pair<std::string, std::string>> files{{"plan", arguments.plan},
+                                                         {"structures", arguments.structures}};
+  for (const std::string& source : arguments.sources)
+    files.emplace_back("source model", source.substr(source.find('=') + 1));
+  files.insert(files.end(),
+               {{"compared dose", arguments.compare}, {"points", arguments.points}, {"goals", arguments.goals}});
+  return dose_inputs(files);
 }
 
 Result<> run_dose(const DoseArguments& arguments, Console& console) {
-  if (Result<> writable = check_output_folder(arguments.output); !writable) return writable;
-  Result<DosePlan> plan = read_plan(arguments.plan);
-  if (!plan) return plan.error();
-  plan->says.today = today();
-  const Result<std::vector<SourceModel>> sources = sources_of(arguments, *plan);
-  if (!sources) return sources.error();
-  Result<DoseOptions> options = options_of(arguments, *plan);
-  if (!options) return options.error();
-  options->more_sources.assign(sources->begin() + 1, sources->end());
-  const Result<DoseStructures> structures =
-      structures_of(arguments, *plan, arguments.goals.empty() && plan->implant == Implant::permanent, console);
-  if (!structures) return structures.error();
-  const std::string& frame =
-      plan->frame_of_reference.empty() ? structures->frame_of_reference : plan->frame_of_reference;
-  const Result<FoundPatient> patient = patient_of({{arguments.plan, arguments.structures, arguments.compare},
-                                                   arguments.patient_from,
-                                                   frame,
-                                                   arguments.ignore_frame});
-  if (!patient) return patient.error();
-  Result<DoseEvaluation> e =
-      evaluate_dose(*plan, sources->front(), structures->structures, *options, console.progress());
-  if (!e) return e.error();
-  e->warnings.insert(e->warnings.end(), structures->notes.begin(), structures->notes.end());
-  e->warnings.insert(e->warnings.end(), plan->notes.begin(), plan->notes.end());
-  e->warnings.insert(e->warnings.end(), patient->notes.begin(), patient->notes.end());
-  e->patient = record_of_files(*patient, *plan, sources->front());
-  e->assumptions.push_back(patient_sentence(*patient));
-  if (arguments.ignore_frame) e->assumptions.emplace_back("Frames of reference were not compared, as asked.");
-  if (arguments.goals.empty() && !options->goals.empty()) {
-    e->assumptions.emplace_back(
+  need(check_output_folder(arguments.output));
+  auto plan = need(read_plan(arguments.plan));
+  plan.says.today = today();
+  const auto sources = sources_of(arguments, plan);
+  auto options = options_of(arguments, plan);
+  options.more_sources.assign(sources.begin() + 1, sources.end());
+  const auto structures =
+      structures_of(arguments, plan, arguments.goals.empty() && plan.implant == Implant::permanent, console);
+  const std::string& frame = plan.frame_of_reference.empty() ? structures.frame_of_reference : plan.frame_of_reference;
+  const auto patient = need(patient_of({{arguments.plan, arguments.structures, arguments.compare},
+                                        arguments.patient_from,
+                                        frame,
+                                        arguments.ignore_frame}));
+  auto e = need(evaluate_dose(plan, sources.front(), structures.structures, options, console.progress()));
+  e.warnings.insert(e.warnings.end(), structures.notes.begin(), structures.notes.end());
+  e.warnings.insert(e.warnings.end(), plan.notes.begin(), plan.notes.end());
+  e.warnings.insert(e.warnings.end(), patient.notes.begin(), patient.notes.end());
+  e.patient = record_of_files(patient, plan, sources.front());
+  e.assumptions.push_back(patient_sentence(patient));
+  if (arguments.ignore_frame) e.assumptions.emplace_back("Frames of reference were not compared, as asked.");
+  if (arguments.goals.empty() && !options.goals.empty()) {
+    e.assumptions.emplace_back(
         "The goals are common ones for permanent prostate implants. Which publication each bound comes from has not "
         "been "
         "checked against its text; give the goals of your own protocol with --goals.");
   }
   if (!arguments.compare.empty()) {
-    const Result<DoseGrid> grid = read_rtdose(arguments.compare);
-    if (!grid) return grid.error();
+    const auto grid = need(read_rtdose(arguments.compare));
     Vec3 shift = Vec3::Zero();
     for (std::size_t k = 0; k < arguments.compare_shift_mm.size(); ++k)
       shift[static_cast<Eigen::Index>(k)] = arguments.compare_shift_mm[k];
-    if (Result<> done = compare_with_grid(*e, *grid, structures->structures, *options, shift); !done) return done;
+    need(compare_with_grid(e, grid, structures.structures, options, shift));
     if (!shift.isZero())
-      e->assumptions.push_back(
+      e.assumptions.push_back(
           fmt::format("The compared dose grid was moved by ({:g}, {:g}, {:g}) mm.", shift.x(), shift.y(), shift.z()));
-    e->warnings.insert(e->warnings.end(), grid->notes.begin(), grid->notes.end());
+    e.warnings.insert(e.warnings.end(), grid.notes.begin(), grid.notes.end());
   }
-  if (e->quantity.find("rate") != std::string::npos) {
-    e->assumptions.emplace_back(
+  if (e.quantity.find("rate") != std::string::npos) {
+    e.assumptions.emplace_back(
         "There is no dose.dcm, since DICOM has no unit of a dose rate; dose.nrrd has the rates [Gy/h].");
   }
-  e->computed_on = date_and_time();
-  e->inputs = inputs_of(arguments);
-  for (const std::string& warning : e->warnings) console.warn(warning);
-  if (Result<> written = write_dose_results(*e, arguments.output, console.progress()); !written) return written;
-  print(*e, console);
+  e.computed_on = date_and_time();
+  e.inputs = inputs_of(arguments);
+  for (const std::string& warning : e.warnings) console.warn(warning);
+  need(write_dose_results(e, arguments.output, console.progress()));
+  print(e, console);
   console.say(fmt::format("{} → {}", arguments.plan, (fs::path(arguments.output) / "report.html").string()));
-  return console.write_json(Json::parse(dose_json(*e)));
+  return console.write_json(Json::parse(dose_json(e)));
 }
 
 [[noreturn]] void print_rules() {
@@ -282,74 +262,52 @@ Command add_dose_command(CLI::App& program) {
   CLI::App* app = program.add_subcommand(
       "dose", "Compute the TG-43 dose of a plan, the dose to its structures, and compare it with a dose grid");
   app->add_option("PLAN", arguments->plan, "Plan: DICOM RTPLAN, plan JSON, or CSV of seeds")->required();
-  app->add_option("--structures", arguments->structures,
-                  "Structures: contours (DICOM RTSTRUCT, contour JSON), label mask or tetrahedral mesh")
-      ->type_name("FILE");
-  app->add_option("--patient-from", arguments->patient_from,
-                  "DICOM file whose patient, study, frame of reference and structure set plan.dcm and dose.dcm get "
-                  "(default: those of plan and structures, where they agree)")
-      ->type_name("FILE");
-  app->add_option("--source", arguments->sources,
-                  "Source model: a name such as i125_6711, or a JSON file with TG-43 data; no DICOM plan names it. For "
-                  "one of several kinds of source ID=NAME, with its number in the plan or its isotope; may be repeated")
-      ->type_name("[ID=]NAME|FILE")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  app->add_option("-o,--output", arguments->output,
-                  "Folder for report.html, dose.json, dvh.csv, dose.nrrd, plan.dcm and dose.dcm")
-      ->type_name("OUT")
+  option(app, "--structures", arguments->structures, "FILE",
+         "Structures: contours (DICOM RTSTRUCT, contour JSON), label mask or tetrahedral mesh");
+  option(app, "--patient-from", arguments->patient_from, "FILE",
+         "DICOM file whose patient, study, frame of reference and structure set plan.dcm and dose.dcm get "
+         "(default: those of plan and structures, where they agree)");
+  repeated_option(
+      app, "--source", arguments->sources, "[ID=]NAME|FILE",
+      "Source model: a name such as i125_6711, or a JSON file with TG-43 data; no DICOM plan names it. For "
+      "one of several kinds of source ID=NAME, with its number in the plan or its isotope; may be repeated");
+  option(app, "-o,--output", arguments->output, "OUT",
+         "Folder for report.html, dose.json, dvh.csv, dose.nrrd, plan.dcm and dose.dcm")
       ->required();
-  app->add_option("--formalism", arguments->formalism,
-                  "line2d (default): line source with 2D anisotropy; line1d: line source with 1D anisotropy; point: "
-                  "point source with 1D anisotropy")
-      ->type_name("NAME")
+  option(app, "--formalism", arguments->formalism, "NAME",
+         "line2d (default): line source with 2D anisotropy; line1d: line source with 1D anisotropy; point: "
+         "point source with 1D anisotropy")
       ->check(one_of({"line2d", "line1d", "point"}));
-  app->add_option("--phi-an", arguments->phi_an, "Constant 1D anisotropy in place of the source model's")
-      ->type_name("X")
+  option(app, "--phi-an", arguments->phi_an, "X", "Constant 1D anisotropy in place of the source model's")
       ->check(number_between(0.5, 1.5));
-  app->add_option("--prescription", arguments->prescription_Gy, "Prescribed dose in Gy (default: the plan's)")
-      ->type_name("GY")
+  option(app, "--prescription", arguments->prescription_Gy, "GY", "Prescribed dose in Gy (default: the plan's)")
       ->check(number_between(0.01, 10000, "Gy"));
-  app->add_option("--quantity", arguments->quantity,
-                  "total (default): dose until the sources have decayed; rate: initial dose rate in Gy/h")
-      ->type_name("NAME")
+  option(app, "--quantity", arguments->quantity, "NAME",
+         "total (default): dose until the sources have decayed; rate: initial dose rate in Gy/h")
       ->check(one_of({"total", "rate"}));
-  app->add_option("--days", arguments->days, "Dose within this number of days after the implantation")
-      ->type_name("D")
+  option(app, "--days", arguments->days, "D", "Dose within this number of days after the implantation")
       ->check(number_between(0.001, 100000, "d"));
-  app->add_option(
-         "--decay-days", arguments->decay_days,
+  option(app, "--decay-days", arguments->decay_days, "D",
          "Days from the date of the strengths to the implantation, during which the sources decay (default: 0)")
-      ->type_name("D")
       ->check(number_between(-10000, 10000, "d"));
-  app->add_option("--compare", arguments->compare, "DICOM RTDOSE to compare with")->type_name("RTDOSE");
-  app->add_option("--compare-shift", arguments->compare_shift_mm,
-                  "Move the compared grid by this many mm along x, y and z (LPS)")
-      ->type_name("X Y Z")
+  option(app, "--compare", arguments->compare, "RTDOSE", "DICOM RTDOSE to compare with");
+  option(app, "--compare-shift", arguments->compare_shift_mm, "X Y Z",
+         "Move the compared grid by this many mm along x, y and z (LPS)")
       ->expected(3);
   app->add_flag("--compare-anyway", arguments->compare_anyway,
                 "Compare with a dose grid that says that it is of another plan or frame of reference, or no physical "
                 "dose of a whole plan, or whose doses differ by more than a factor of five");
-  app->add_option("--points", arguments->points, "CSV with the columns x_mm, y_mm, z_mm: points whose dose is computed")
-      ->type_name("FILE");
-  app->add_option("--goals", arguments->goals,
-                  "CSV with the columns structure, metric, bound, citation in place of the program's own goals")
-      ->type_name("FILE");
-  app->add_option("--region", arguments->regions,
-                  "Take the structure NAME as CANONICAL, e.g. 'PTV 1=prostate'; may be repeated")
-      ->type_name("NAME=CANONICAL")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  app->add_option("--skip", arguments->skip, "Leave out the structure NAME; may be repeated")
-      ->type_name("NAME")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  app->add_option("--step", arguments->step_mm,
-                  "Distance of the samples of structures in mm (default: 0.5, or 0.25 below 2 cc)")
-      ->type_name("MM")
+  option(app, "--points", arguments->points, "FILE",
+         "CSV with the columns x_mm, y_mm, z_mm: points whose dose is computed");
+  option(app, "--goals", arguments->goals, "FILE",
+         "CSV with the columns structure, metric, bound, citation in place of the program's own goals");
+  repeated_option(app, "--region", arguments->regions, "NAME=CANONICAL",
+                  "Take the structure NAME as CANONICAL, e.g. 'PTV 1=prostate'; may be repeated");
+  repeated_option(app, "--skip", arguments->skip, "NAME", "Leave out the structure NAME; may be repeated");
+  option(app, "--step", arguments->step_mm, "MM",
+         "Distance of the samples of structures in mm (default: 0.5, or 0.25 below 2 cc)")
       ->check(number_between(0.05, 5, "mm"));
-  app->add_option("--grid", arguments->grid_mm, "Distance of the points of the dose grid in mm (default: 1)")
-      ->type_name("MM")
+  option(app, "--grid", arguments->grid_mm, "MM", "Distance of the points of the dose grid in mm (default: 1)")
       ->check(number_between(0.2, 10, "mm"));
   app->add_flag_callback("--print-rules", print_rules, "Print the rules by which plans are judged, and nothing else")
       ->trigger_on_parse();

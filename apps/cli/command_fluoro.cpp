@@ -44,25 +44,21 @@ struct Exposed {
   double cpu_ms = 0.0;
 };
 
-Result<Exposed> exposed(const TetMesh& mesh, const Moment& moment, const FluoroscopySettings& settings,
-                        std::optional<double> second_keV) {
-  const auto unit = Fluoroscope::create(mesh, settings);
-  if (!unit) return unit.error();
+Exposed exposed(const TetMesh& mesh, const Moment& moment, const FluoroscopySettings& settings,
+                std::optional<double> second_keV) {
+  const auto unit = need(Fluoroscope::create(mesh, settings));
   Exposed result;
-  result.cpu_ms = 1e3 * measure::cpu_seconds([&] { (*unit)->expose(moment); });
+  result.cpu_ms = 1e3 * measure::cpu_seconds([&] { unit->expose(moment); });
   if (!second_keV) {
-    result.picture = (*unit)->picture();
+    result.picture = unit->picture();
     return result;
   }
   FluoroscopySettings other = settings;
   other.energy_keV = *second_keV;
   other.random += 1;  // the photons of the second exposure are other photons
-  const auto second = Fluoroscope::create(mesh, other);
-  if (!second) return second.error();
-  result.cpu_ms += 1e3 * measure::cpu_seconds([&] { (*second)->expose(moment); });
-  auto difference = without_soft_tissue(**unit, **second);
-  if (!difference) return difference.error();
-  result.picture = std::move(*difference);
+  const auto second = need(Fluoroscope::create(mesh, other));
+  result.cpu_ms += 1e3 * measure::cpu_seconds([&] { second->expose(moment); });
+  result.picture = need(without_soft_tissue(*unit, *second));
   return result;
 }
 
@@ -85,32 +81,30 @@ PictureMarks marks_of(const FluoroscopySettings& s, std::optional<double> second
 }
 
 Result<> run_fluoro(const FluoroArguments& arguments, Console& console) {
-  if (Result<> writable = check_fluoro_output(arguments); !writable) return writable;
-  auto imaged = imaged_patient(arguments.file, arguments.settings, arguments.time_s, console.progress());
-  if (!imaged) return imaged.error();
+  need(check_fluoro_output(arguments));
+  auto imaged = need(imaged_patient(arguments.file, arguments.settings, arguments.time_s, console.progress()));
   if (!arguments.seeds.empty()) {
-    if (auto added = add_planned_seeds(*imaged, arguments.seeds); !added) return added;
+    need(add_planned_seeds(imaged, arguments.seeds));
   }
-  const Moment moment = pressed(*imaged, imaged->scenario.probe);
-  const FluoroscopySettings& settings = imaged->scenario.fluoroscopy;
-  const auto result = exposed(imaged->mesh, moment, settings, arguments.second_keV);
-  if (!result) return result.error();
+  const Moment moment = pressed(imaged, imaged.scenario.probe);
+  const FluoroscopySettings& settings = imaged.scenario.fluoroscopy;
+  const auto result = exposed(imaged.mesh, moment, settings, arguments.second_keV);
 
   const fs::path path = arguments.output;
   if (path.has_parent_path()) {
-    if (auto made = make_folder(path.parent_path()); !made) return made;
+    need(make_folder(path.parent_path()));
   }
-  const GreyPicture& picture = result->picture;
+  const GreyPicture& picture = result.picture;
   const Result<> written = path.extension() == ".png"
                                ? write_picture_png(picture, marks_of(settings, arguments.second_keV), path)
                                : write_picture_mha(std::span(&picture, 1), picture.mm_per_pixel, path);
   if (!written) return written;
-  for (const std::string& note : imaged->notes) console.warn(note);
+  for (const std::string& note : imaged.notes) console.warn(note);
   console.say(fmt::format(
       "{}: {} × {} pixels of {:.3f} mm at the gland, {} needle{}, {} seed{}; simulated, not a medical device",
       path.string(), picture.columns, picture.rows, picture.mm_per_pixel, moment.needles.size(),
       moment.needles.size() == 1 ? "" : "s", moment.seeds.size(), moment.seeds.size() == 1 ? "" : "s"));
-  const Json probe = say_probe(*imaged, console);
+  const Json probe = say_probe(imaged, console);
   Json json{{"file", path.string()},
             {"case", arguments.file},
             {"time_s", moment.time_s},
@@ -120,11 +114,11 @@ Result<> run_fluoro(const FluoroArguments& arguments, Console& console) {
             {"second_energy_keV", arguments.second_keV ? Json(*arguments.second_keV) : Json()},
             {"pixels", picture.columns},
             {"mm_per_pixel", picture.mm_per_pixel},
-            {"nodes", imaged->mesh.node_count()},
+            {"nodes", imaged.mesh.node_count()},
             {"needles", moment.needles.size()},
             {"seeds", moment.seeds.size()},
             {"probe", probe},
-            {"cpu_ms", result->cpu_ms},
+            {"cpu_ms", result.cpu_ms},
             {"notice", kPictureNotice}};
   return console.write_json(json);
 }
@@ -135,21 +129,14 @@ Command add_fluoro_command(CLI::App& program) {
   auto arguments = std::make_shared<FluoroArguments>();
   CLI::App* app = program.add_subcommand(
       "fluoro", "Make an X-ray picture of the deformed patient with needle and seeds. Not a medical device");
-  app->add_option("CASE", arguments->file,
-                  "Scenario file or saved model, whose patient is shown at rest, or the run.h5 of a recording")
-      ->type_name("SCENARIO.toml|run.h5")
+  option(app, "CASE", arguments->file, "SCENARIO.toml|run.h5",
+         "Scenario file or saved model, whose patient is shown at rest, or the run.h5 of a recording")
       ->required();
-  app->add_option("-o,--output", arguments->output,
-                  "GreyPicture: .png with a scale, or .mha with grey values and their place in the patient")
-      ->type_name("FILE");
-  app->add_option("--time", arguments->time_s, "Moment of the recording [s] (default: when the needle is deepest)")
-      ->type_name("S");
+  option(app, "-o,--output", arguments->output, "FILE",
+         "GreyPicture: .png with a scale, or .mha with grey values and their place in the patient");
+  option(app, "--time", arguments->time_s, "S", "Moment of the recording [s] (default: when the needle is deepest)");
   // Before the short options, which add to the same list.
-  app->add_option("--set", arguments->settings,
-                  "Set a key of the scenario, e.g. --set fluoroscopy.pixels=1024; may be repeated")
-      ->type_name("KEY=VALUE")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  settings_option(app, arguments->settings, "fluoroscopy.pixels=1024");
   const auto shorthand = [&](const char* option, const char* key, double low, double high, const char* unit,
                              const char* meaning) {
     app->add_option_function<std::string>(
@@ -165,13 +152,11 @@ Command add_fluoro_command(CLI::App& program) {
             "Angle of the C-arm; positive = the detector goes to the patient's left");
   shorthand("--cranial", "cranial_deg", -60, 60, "DEG", "Angle of the C-arm; positive = the detector goes superior");
   shorthand("--energy", "energy_keV", 20, 150, "KEV", "Energy of the photons");
-  app->add_option("--second-energy", arguments->second_keV,
-                  "Make a second exposure with this higher energy and subtract it, so that soft tissue vanishes")
-      ->type_name("KEV")
+  option(app, "--second-energy", arguments->second_keV, "KEV",
+         "Make a second exposure with this higher energy and subtract it, so that soft tissue vanishes")
       ->check(number_between(20, 150, "keV"));
-  app->add_option("--seeds", arguments->seeds,
-                  "Also show the seeds of this plan at their planned places in the tissue (DICOM RTPLAN, JSON or CSV)")
-      ->type_name("PLAN");
+  option(app, "--seeds", arguments->seeds, "PLAN",
+         "Also show the seeds of this plan at their planned places in the tissue (DICOM RTPLAN, JSON or CSV)");
   return {app, [arguments](Console& console) { return run_fluoro(*arguments, console); }};
 }
 

@@ -130,16 +130,13 @@ Json rows_of(const Eigen::Matrix4d& matrix) {
   return rows;
 }
 
-Result<std::vector<MadePicture>> make(const ImageArguments& arguments, const ImagedPatient& patient, ProbeKind kind,
-                                      UltrasoundArray array) {
-  const Result<ProbeSeat> seat = probe_seat(patient.mesh, patient.gland_regions, arguments.file);
-  if (!seat) return seat.error();
-  Result<UltrasoundScanner> scanner =
-      UltrasoundScanner::create(patient.mesh, patient.echoes, patient.scenario.ultrasound);
-  if (!scanner) return scanner.error();
+std::vector<MadePicture> make(const ImageArguments& arguments, const ImagedPatient& patient, ProbeKind kind,
+                              UltrasoundArray array) {
+  const auto seat = need(probe_seat(patient.mesh, patient.gland_regions, arguments.file));
+  auto scanner = need(UltrasoundScanner::create(patient.mesh, patient.echoes, patient.scenario.ultrasound));
   ProbeSettings probe = patient.scenario.probe;
   probe.kind = kind;
-  std::vector<double> planes{probe.depth_mm.value_or(seat->gland_mm)};
+  std::vector<double> planes{probe.depth_mm.value_or(seat.gland_mm)};
   if (arguments.all) planes = planes_through(patient, probe.step_mm);
   ScanConversion conversion(arguments.pixel_mm);
   std::vector<MadePicture> made;
@@ -147,7 +144,7 @@ Result<std::vector<MadePicture>> make(const ImageArguments& arguments, const Ima
     probe.depth_mm = z;
     const Moment moment = pressed(patient, probe);
     const double before = measure::thread_cpu_s();
-    const PolarPicture polar = scanner->scan(moment, kind, probe_place(probe, *seat), array);
+    const PolarPicture polar = scanner.scan(moment, kind, probe_place(probe, seat), array);
     const double cpu_ms = 1e3 * (measure::thread_cpu_s() - before);
     made.push_back({conversion.convert(polar), polar.beams, z, cpu_ms});
   }
@@ -155,40 +152,33 @@ Result<std::vector<MadePicture>> make(const ImageArguments& arguments, const Ima
 }
 
 Result<> run_image(const ImageArguments& arguments, Console& console) {
-  if (Result<> checked = check_arguments(arguments); !checked) return checked;
+  need(check_arguments(arguments));
   std::vector<std::string> settings_of_probe = arguments.settings;
   if (const auto z = given(arguments.z_mm)) settings_of_probe.push_back(fmt::format("probe.depth_mm={}", *z));
-  Result<ImagedPatient> patient =
-      imaged_patient(arguments.file, settings_of_probe, given(arguments.time_s), console.progress());
-  if (!patient) return patient.error();
-  if (!arguments.seeds.empty())
-    if (Result<> added = add_planned_seeds(*patient, arguments.seeds); !added) return added;
-  UltrasoundArray array = patient->scenario.ultrasound.array;
+  auto patient = need(imaged_patient(arguments.file, settings_of_probe, given(arguments.time_s), console.progress()));
+  if (!arguments.seeds.empty()) need(add_planned_seeds(patient, arguments.seeds));
+  UltrasoundArray array = patient.scenario.ultrasound.array;
   if (!arguments.array.empty())
     array = arguments.array == "sagittal" ? UltrasoundArray::sagittal : UltrasoundArray::transverse;
-  const bool has_probe = patient->scenario.probe.kind != ProbeKind::none;
-  const ProbeKind kind = has_probe ? patient->scenario.probe.kind : ProbeKind::biplane;
+  const bool has_probe = patient.scenario.probe.kind != ProbeKind::none;
+  const ProbeKind kind = has_probe ? patient.scenario.probe.kind : ProbeKind::biplane;
   if (array == UltrasoundArray::sagittal && (arguments.all || arguments.grid))
     return input_error(arguments.all ? "--all" : "--template", "it belongs to transverse pictures",
                        "Leave it out, or give --array transverse");
-  const Result<std::vector<MadePicture>> made = make(arguments, *patient, kind, array);
-  if (!made) return made.error();
-  for (const std::string& note : patient->notes) console.warn(note);
+  const auto made = make(arguments, patient, kind, array);
+  for (const std::string& note : patient.notes) console.warn(note);
   if (!has_probe)
     console.detail("The scenario has no probe; the pictures are made as if one of two planes lay in the rectum");
 
   const fs::path output = arguments.output;
   const bool volume = output.extension() == ".mha";
-  if (output.has_parent_path())
-    if (Result<> folder = make_folder(output.parent_path()); !folder) return folder;
+  if (output.has_parent_path()) need(make_folder(output.parent_path()));
   Json pictures = Json::array();
-  for (std::size_t k = 0; k < made->size(); ++k) {
-    const MadePicture& one = (*made)[k];
+  for (std::size_t k = 0; k < made.size(); ++k) {
+    const MadePicture& one = made[k];
     const fs::path path = arguments.all && !volume ? numbered(output, k) : output;
     if (!volume) {
-      if (Result<> written = write_picture_png(one.picture, marks_of(one, arguments, *patient, kind, array), path);
-          !written)
-        return written;
+      need(write_picture_png(one.picture, marks_of(one, arguments, patient, kind, array), path));
     }
     pictures.push_back({{"file", path.string()},
                         {"z_mm", one.z_mm},
@@ -200,25 +190,24 @@ Result<> run_image(const ImageArguments& arguments, Console& console) {
   }
   if (volume) {
     std::vector<GreyPicture> planes;
-    for (const MadePicture& one : *made) planes.push_back(one.picture);
-    const double thickness =
-        arguments.all ? patient->scenario.probe.step_mm : patient->scenario.ultrasound.elevation_mm;
-    if (Result<> written = write_picture_mha(planes, thickness, output); !written) return written;
+    for (const MadePicture& one : made) planes.push_back(one.picture);
+    const double thickness = arguments.all ? patient.scenario.probe.step_mm : patient.scenario.ultrasound.elevation_mm;
+    need(write_picture_mha(planes, thickness, output));
   }
-  const UltrasoundSettings& settings = patient->scenario.ultrasound;
-  console.say(fmt::format("{} picture{} ({} array, {} lines of {} samples, {:.1f} ms each) → {}", made->size(),
-                          made->size() == 1 ? "" : "s", name_of(array), settings.lines, settings.samples,
-                          made->back().cpu_ms, pictures.back()["file"].get<std::string>()));
-  const Json probe = say_probe(*patient, console);
+  const UltrasoundSettings& settings = patient.scenario.ultrasound;
+  console.say(fmt::format("{} picture{} ({} array, {} lines of {} samples, {:.1f} ms each) → {}", made.size(),
+                          made.size() == 1 ? "" : "s", name_of(array), settings.lines, settings.samples,
+                          made.back().cpu_ms, pictures.back()["file"].get<std::string>()));
+  const Json probe = say_probe(patient, console);
   console.say("The pictures are simulated. Not a medical device.");
   return console.write_json({{"notice", kPictureNotice},
                              {"array", name_of(array)},
-                             {"time_s", patient->moment.time_s},
-                             {"nodes", patient->mesh.node_count()},
+                             {"time_s", patient.moment.time_s},
+                             {"nodes", patient.mesh.node_count()},
                              {"lines", settings.lines},
                              {"samples", settings.samples},
-                             {"needles", patient->moment.needles.size()},
-                             {"seeds", patient->moment.seeds.size()},
+                             {"needles", patient.moment.needles.size()},
+                             {"seeds", patient.moment.seeds.size()},
                              {"probe", probe},
                              {"pictures", pictures}});
 }
@@ -230,37 +219,26 @@ Command add_image_command(CLI::App& program) {
   CLI::App* app = program.add_subcommand(
       "image",
       "Make ultrasound pictures of a patient at rest, or of a recorded run, as a transrectal probe shows them");
-  app->add_option("CASE", arguments->file,
-                  "Scenario (TOML): the patient at rest, without a needle; or the run.h5 of a run")
-      ->type_name("SCENARIO.toml|run.h5")
+  option(app, "CASE", arguments->file, "SCENARIO.toml|run.h5",
+         "Scenario (TOML): the patient at rest, without a needle; or the run.h5 of a run")
       ->required();
-  app->add_option("-o,--output", arguments->output,
-                  "Picture: .png with a scale, or .mha with its place in the patient; with --all several .png or one "
-                  "volume")
-      ->type_name("FILE")
+  option(app, "-o,--output", arguments->output, "FILE",
+         "Picture: .png with a scale, or .mha with its place in the patient; with --all several .png or one "
+         "volume")
       ->required();
-  app->add_option("--array", arguments->array, "Array of the probe (default: ultrasound.array of the scenario)")
-      ->type_name("WORD")
+  option(app, "--array", arguments->array, "WORD", "Array of the probe (default: ultrasound.array of the scenario)")
       ->check(one_of({"transverse", "sagittal"}));
-  app->add_option("--z", arguments->z_mm, "LPS z of the transverse array in mm; the same as --set probe.depth_mm=MM")
-      ->type_name("MM")
+  option(app, "--z", arguments->z_mm, "MM", "LPS z of the transverse array in mm; the same as --set probe.depth_mm=MM")
       ->check(number_between(-1e4, 1e4, "mm"));
-  app->add_option("--time", arguments->time_s, "Time of a recorded run in s (default: when the needle was deepest)")
-      ->type_name("S")
+  option(app, "--time", arguments->time_s, "S", "Time of a recorded run in s (default: when the needle was deepest)")
       ->check(number_between(0, 1e6, "s"));
-  app->add_option("--seeds", arguments->seeds,
-                  "Also show the seeds of this plan at their planned places in the tissue (DICOM RTPLAN, JSON or CSV)")
-      ->type_name("PLAN");
+  option(app, "--seeds", arguments->seeds, "PLAN",
+         "Also show the seeds of this plan at their planned places in the tissue (DICOM RTPLAN, JSON or CSV)");
   app->add_flag("--all", arguments->all, "All planes of the stepper through the gland, probe.step_mm apart");
   app->add_flag("--template", arguments->grid, "Draw the template's holes as dots on a transverse picture");
-  app->add_option("--pixel", arguments->pixel_mm, "Side of a pixel in mm (default: 0.2)")
-      ->type_name("MM")
+  option(app, "--pixel", arguments->pixel_mm, "MM", "Side of a pixel in mm (default: 0.2)")
       ->check(number_between(0.05, 2, "mm"));
-  app->add_option("--set", arguments->settings,
-                  "Set a key of the scenario, e.g. --set probe.roll_deg=20; may be repeated")
-      ->type_name("KEY=VALUE")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  settings_option(app, arguments->settings, "probe.roll_deg=20");
   return {app, [arguments](Console& console) { return run_image(*arguments, console); }};
 }
 

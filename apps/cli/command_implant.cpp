@@ -30,14 +30,21 @@ struct ImplantArguments {
 
 bool is_temporary(const ImplantOutcome& outcome) { return implant_of(outcome.history.seeds) == Implant::temporary; }
 
+std::vector<std::string> error_cells(const std::string& name, const SeedErrors& e) {
+  const auto axis = [](const SeedErrors::Axis& a) { return fmt::format("{:.2f} ± {:.2f}", a.mean_mm, a.sd_mm); };
+  return {name,
+          fmt::format("{}", e.seeds),
+          fmt::format("{:.2f}", e.mean_mm),
+          fmt::format("{:.2f}", e.p95_mm),
+          axis(e.axes[0]),
+          axis(e.axes[1]),
+          axis(e.axes[2])};
+}
+
 std::string errors_text(const ImplantOutcome& outcome) {
   Table table({is_temporary(outcome) ? "dwell positions" : "seeds", "number", "mean [mm]", "95 % [mm]", "left [mm]",
                "posterior [mm]", "superior [mm]"});
-  const auto row = [&](const std::string& name, const SeedErrors& e) {
-    const auto axis = [](const SeedErrors::Axis& a) { return fmt::format("{:.2f} ± {:.2f}", a.mean_mm, a.sd_mm); };
-    table.row({name, fmt::format("{}", e.seeds), fmt::format("{:.2f}", e.mean_mm), fmt::format("{:.2f}", e.p95_mm),
-               axis(e.axes[0]), axis(e.axes[1]), axis(e.axes[2])});
-  };
+  const auto row = [&](const std::string& name, const SeedErrors& e) { table.row(error_cells(name, e)); };
   if (outcome.before) row(outcome.before->name, seed_errors(outcome.before->history.seeds));
   if (outcome.at_planning) row(outcome.at_planning->name, seed_errors(outcome.at_planning->history.seeds));
   row(outcome.before        ? "after compensation"
@@ -119,11 +126,7 @@ std::string target_text(const ImplantOutcome& outcome) {
 /// The errors of the seeds that were found, beside those of the simulation.
 std::string found_errors_text(const FoundComparison& comparison) {
   Table table({"errors", "number", "mean [mm]", "95 % [mm]", "left [mm]", "posterior [mm]", "superior [mm]"});
-  const auto row = [&](const std::string& name, const SeedErrors& e) {
-    const auto axis = [](const SeedErrors::Axis& a) { return fmt::format("{:.2f} ± {:.2f}", a.mean_mm, a.sd_mm); };
-    table.row({name, fmt::format("{}", e.seeds), fmt::format("{:.2f}", e.mean_mm), fmt::format("{:.2f}", e.p95_mm),
-               axis(e.axes[0]), axis(e.axes[1]), axis(e.axes[2])});
-  };
+  const auto row = [&](const std::string& name, const SeedErrors& e) { table.row(error_cells(name, e)); };
   row("found − planned", comparison.as_found.error);
   row("found − simulated", comparison.as_found.remainder);
   row("found − planned, without common shift", comparison.without_shift.error);
@@ -183,17 +186,12 @@ Result<> check_found_is_no_result(const std::filesystem::path& found, const std:
 
 /// Tells all doses when and from which files they were computed.
 void add_record(ImplantOutcome& outcome, const ImplantArguments& arguments, const Scenario& scenario) {
-  std::vector<DoseInput> inputs;
-  const auto add = [&](const char* role, const std::string& path) {
-    std::error_code code;
-    if (!path.empty() && std::filesystem::exists(path, code)) inputs.push_back(dose_input(role, path));
-  };
-  add("scenario", arguments.scenario);
-  add("plan", scenario.plan.file);
-  add("patient", scenario.patient.source);
-  add("source model", scenario.plan.source);
-  add("goals", scenario.plan.goals);
-  add("found seeds", arguments.found);
+  const std::vector<DoseInput> inputs = dose_inputs({{"scenario", arguments.scenario},
+                                                     {"plan", scenario.plan.file},
+                                                     {"patient", scenario.patient.source},
+                                                     {"source model", scenario.plan.source},
+                                                     {"goals", scenario.plan.goals},
+                                                     {"found seeds", arguments.found}});
   std::vector<DoseEvaluation*> doses{&outcome.planned, &outcome.delivered};
   if (outcome.found) doses.push_back(&outcome.found->dose);
   for (DoseEvaluation* dose : doses) {
@@ -203,51 +201,47 @@ void add_record(ImplantOutcome& outcome, const ImplantArguments& arguments, cons
 }
 
 Result<> run_implant(const ImplantArguments& arguments, Console& console) {
-  const Result<Scenario> scenario = read_scenario(arguments.scenario, arguments.settings);
-  if (!scenario) return scenario.error();
-  const std::filesystem::path folder =
-      arguments.output.empty() ? std::filesystem::path("out") / std::filesystem::path(arguments.scenario).stem()
-                               : std::filesystem::path(arguments.output);
-  if (Result<> writable = check_output_folder(folder); !writable) return writable;
-  if (Result<> kept = check_found_is_no_result(arguments.found, folder); !kept) return kept;
+  const auto scenario = need(read_scenario(arguments.scenario, arguments.settings));
+  const std::filesystem::path folder = result_folder(arguments.output, arguments.scenario);
+  need(check_output_folder(folder));
+  need(check_found_is_no_result(arguments.found, folder));
   warn_before_start(arguments.scenario, arguments.settings, console);
-  Result<ImplantOutcome> outcome = implant(*scenario, arguments.scenario,
-                                           {.compensate = arguments.compensate,
-                                            .span = arguments.span,
-                                            .found = arguments.found,
-                                            .patient_from = arguments.patient_from},
-                                           console.progress());
-  if (!outcome) return outcome.error();
-  add_record(*outcome, arguments, *scenario);
-  for (const std::string& warning : outcome->warnings) console.warn(warning);
-  if (Result<> written = write_implant_results(*outcome, folder, console.progress()); !written) return written;
+  auto outcome = need(implant(scenario, arguments.scenario,
+                              {.compensate = arguments.compensate,
+                               .span = arguments.span,
+                               .found = arguments.found,
+                               .patient_from = arguments.patient_from},
+                              console.progress()));
+  add_record(outcome, arguments, scenario);
+  for (const std::string& warning : outcome.warnings) console.warn(warning);
+  need(write_implant_results(outcome, folder, console.progress()));
   double seconds = 0.0;
   long steps = 0;
-  for (const NeedleHistory& needle : outcome->history.needles) {
+  for (const NeedleHistory& needle : outcome.history.needles) {
     seconds += needle.seconds;
     steps += needle.steps;
   }
-  const bool temporary = is_temporary(*outcome);
-  console.say(fmt::format("{}: {} {}, {} {}, {} nodes; {} steps in {:.1f} s of processor time", scenario->name,
-                          outcome->history.needles.size(), temporary ? "catheters" : "needles",
-                          outcome->history.seeds.size(), temporary ? "dwell positions" : "seeds",
-                          outcome->history.nodes, steps, seconds));
-  console.say(patient_sentence(outcome->delivered.patient));
+  const bool temporary = is_temporary(outcome);
+  console.say(fmt::format("{}: {} {}, {} {}, {} nodes; {} steps in {:.1f} s of processor time", scenario.name,
+                          outcome.history.needles.size(), temporary ? "catheters" : "needles",
+                          outcome.history.seeds.size(), temporary ? "dwell positions" : "seeds", outcome.history.nodes,
+                          steps, seconds));
+  console.say(patient_sentence(outcome.delivered.patient));
   console.say(
       fmt::format("Distance of the {} from where they were planned (mean ± standard deviation along the axes)\n",
                   temporary ? "dwell positions" : "seeds") +
-      errors_text(*outcome));
-  console.say("Why\n" + causes_text(*outcome));
-  if (outcome->probe) {
+      errors_text(outcome));
+  console.say("Why\n" + causes_text(outcome));
+  if (outcome.probe) {
     std::string facts = "Probe";
-    for (const ProbeFact& fact : probe_facts(*outcome->probe)) facts += fmt::format("\n{}: {}", fact.name, fact.text);
+    for (const ProbeFact& fact : probe_facts(*outcome.probe)) facts += fmt::format("\n{}: {}", fact.name, fact.text);
     console.say(facts);
   }
-  if (outcome->found) say_found(outcome->history, *outcome->found, console);
-  if (!outcome->delivered.goals.empty()) console.say(dose_text(*outcome));
-  if (temporary) console.say("Dose\n" + target_text(*outcome));
+  if (outcome.found) say_found(outcome.history, *outcome.found, console);
+  if (!outcome.delivered.goals.empty()) console.say(dose_text(outcome));
+  if (temporary) console.say("Dose\n" + target_text(outcome));
   console.say(fmt::format("Report: {}", (folder / "report.html").string()));
-  const Json json = Json::parse(implant_json(*outcome));
+  const Json json = Json::parse(implant_json(outcome));
   return console.write_json(json);
 }
 
@@ -259,33 +253,23 @@ Command add_implant_command(CLI::App& program) {
                                          "Implant the seeds of a plan, or the catheters of an HDR plan: where seeds "
                                          "come to rest or dwell positions move, why, "
                                          "and the dose that they give");
-  app->add_option("SCENARIO", arguments->scenario,
-                  "Scenario file with a plan (TOML; stylet insert --print-schema lists its keys)")
-      ->type_name("SCENARIO.toml")
+  option(app, "SCENARIO", arguments->scenario, "SCENARIO.toml",
+         "Scenario file with a plan (TOML; stylet insert --print-schema lists its keys)")
       ->required();
-  app->add_option("-o,--output", arguments->output, "Folder for the results (default: out/NAME)")->type_name("OUT/");
-  app->add_option("--set", arguments->settings,
-                  "Set a key of the scenario, e.g. --set procedure.drop_speed_mm_per_s=10; may be repeated")
-      ->type_name("KEY=VALUE")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  app->add_option(
-         "--compensate", arguments->compensate,
+  option(app, "-o,--output", arguments->output, "OUT/", "Folder for the results (default: out/NAME)");
+  settings_option(app, arguments->settings, "procedure.drop_speed_mm_per_s=10");
+  option(app, "--compensate", arguments->compensate, "ROUNDS",
          "Aim the needles beside the plan so that their seeds come to rest where they were planned, correcting the "
          "aim this many times, and show before and after")
-      ->type_name("ROUNDS")
       ->check(CLI::Range(0, 20));
   app->add_flag("--span", arguments->span,
                 "Also implant in firm and in soft tissue, to show how sure the figures are; takes three times as long");
-  app->add_option(
-         "--found", arguments->found,
+  option(app, "--found", arguments->found, "SEEDS.csv|RTPLAN",
          "Seeds found on images after the implant, in the coordinates of the plan: match them with the simulated "
-         "seeds, and show how much of their errors the simulation explains")
-      ->type_name("SEEDS.csv|RTPLAN");
-  app->add_option("--patient-from", arguments->patient_from,
-                  "DICOM file whose patient, study, frame of reference and structure set the DICOM results get "
-                  "(default: those of plan and patient, where they agree)")
-      ->type_name("FILE");
+         "seeds, and show how much of their errors the simulation explains");
+  option(app, "--patient-from", arguments->patient_from, "FILE",
+         "DICOM file whose patient, study, frame of reference and structure set the DICOM results get "
+         "(default: those of plan and patient, where they agree)");
   return {app, [arguments](Console& console) { return run_implant(*arguments, console); }};
 }
 

@@ -27,13 +27,6 @@ struct InfoArguments {
   std::string output;
 };
 
-/// Describes what Result holds, or passes its error on.
-template <class T>
-Result<Description> described(const Result<T>& read) {
-  if (!read) return read.error();
-  return describe(*read);
-}
-
 /// Adds what judge_fit() says about a patient.
 void add_fit(const PatientInput& input, const InfoArguments& arguments, Description& out) {
   FitOptions options{.scale = arguments.scale};
@@ -63,45 +56,41 @@ Result<> not_a_mistyped_source(const std::string& word) {
 }
 
 /// @param notes receives the reader's sentences about a mesh or surfaces; contours and masks hold their own
-Result<PatientInput> patient_of(const InfoArguments& arguments, std::vector<std::string>& notes) {
-  return read_input(arguments.file, {.scale = arguments.scale, .notes = &notes, .regions_from = arguments.regions_from},
-                    {.volume = arguments.volume}, arguments.skip);
+PatientInput patient_of(const InfoArguments& arguments, std::vector<std::string>& notes) {
+  return need(read_input(arguments.file,
+                         {.scale = arguments.scale, .notes = &notes, .regions_from = arguments.regions_from},
+                         {.volume = arguments.volume}, arguments.skip));
 }
 
-Result<Description> description_of(const InfoArguments& arguments) {
+Description description_of(const InfoArguments& arguments) {
   if (arguments.file == "sources") return describe_known_sources();
   if (const Result<SourceModel> known = find_source(arguments.file); known) return describe(*known);
-  if (Result<> named = not_a_mistyped_source(arguments.file); !named) return named.error();
+  need(not_a_mistyped_source(arguments.file));
   switch (dose_file_kind(arguments.file)) {
     case DoseFileKind::plan:
-      return described(read_plan(arguments.file));
+      return describe(need(read_plan(arguments.file)));
     case DoseFileKind::dose_grid:
-      return described(read_rtdose(arguments.file));
+      return describe(need(read_rtdose(arguments.file)));
     case DoseFileKind::source_model:
-      return described(read_source_model(arguments.file));
+      return describe(need(read_source_model(arguments.file)));
     case DoseFileKind::none:
       break;
   }
   if (is_meant_as_model(arguments.file)) {
-    const Result<ModelFile> model = read_model_file(arguments.file);
-    if (!model) return model.error();
-    return describe(*model);
+    return describe(need(read_model_file(arguments.file)));
   }
   if (is_hdf5_file(arguments.file)) {
-    if (is_implant_record(arguments.file)) return described(read_implant_record(arguments.file));
-    const Result<RunRecording> run = read_recording(arguments.file);
-    if (!run) return run.error();
-    return describe(*run);
+    if (is_implant_record(arguments.file)) return describe(need(read_implant_record(arguments.file)));
+    return describe(need(read_recording(arguments.file)));
   }
   std::vector<std::string> notes;
-  const Result<PatientInput> input = patient_of(arguments, notes);
-  if (!input) return input.error();
-  Description out = std::visit([](const auto& content) { return describe(content); }, *input);
+  const auto input = patient_of(arguments, notes);
+  Description out = std::visit([](const auto& content) { return describe(content); }, input);
   for (const std::string& note : notes) {
     out.json["notes"].push_back(note);
     out.text += "\n  note: " + note;
   }
-  add_fit(*input, arguments, out);
+  add_fit(input, arguments, out);
   return out;
 }
 
@@ -117,37 +106,32 @@ Result<> run_draft(const InfoArguments& arguments, Console& console) {
   if (!arguments.output.empty() && std::filesystem::equivalent(arguments.file, arguments.output, code))
     return input_error(arguments.output, "the scenario would replace the patient's file", "Name another file (-o)");
   if (!arguments.output.empty()) {
-    if (Result<> writable = check_output_file(arguments.output); !writable) return writable;
+    need(check_output_file(arguments.output));
   }
   std::vector<std::string> notes;
-  const Result<PatientInput> input = patient_of(arguments, notes);
-  if (!input) return input.error();
-  const Result<ScenarioDraft> draft =
-      draft_scenario(*input, {arguments.file, source_for(arguments.file, arguments.output), arguments.scale,
-                              arguments.volume, arguments.regions_from, arguments.skip, notes});
-  if (!draft) return draft.error();
-  for (const std::string& warning : draft->warnings) console.warn(warning);
+  const auto input = patient_of(arguments, notes);
+  const auto draft =
+      need(draft_scenario(input, {arguments.file, source_for(arguments.file, arguments.output), arguments.scale,
+                                  arguments.volume, arguments.regions_from, arguments.skip, notes}));
+  for (const std::string& warning : draft.warnings) console.warn(warning);
   if (arguments.output.empty()) {
-    console.say(draft->text);
+    console.say(draft.text);
   } else {
-    if (Result<> written = write_text_file(arguments.output, draft->text + '\n'); !written) return written;
+    need(write_text_file(arguments.output, draft.text + '\n'));
     console.say(fmt::format("{} → {}", arguments.file, arguments.output));
   }
-  return console.write_json({{"file", arguments.file},
-                             {"output", arguments.output},
-                             {"scenario", draft->text},
-                             {"warnings", draft->warnings}});
+  return console.write_json(
+      {{"file", arguments.file}, {"output", arguments.output}, {"scenario", draft.text}, {"warnings", draft.warnings}});
 }
 
 Result<> run_info(const InfoArguments& arguments, Console& console) {
   if (arguments.scenario) return run_draft(arguments, console);
-  const Result<Description> description = description_of(arguments);
-  if (!description) return description.error();
+  const auto description = description_of(arguments);
   Json json = {{"file", arguments.file}};
-  json.update(description->json);
-  for (const std::string& warning : description->warnings) console.warn(arguments.file + ": " + warning);
-  console.say(arguments.file + '\n' + description->text);
-  if (const Result<> said = console.said(); !said) return said;
+  json.update(description.json);
+  for (const std::string& warning : description.warnings) console.warn(arguments.file + ": " + warning);
+  console.say(arguments.file + '\n' + description.text);
+  need(console.said());
   return console.write_json(json);
 }
 
@@ -162,26 +146,21 @@ Command add_info_command(CLI::App& program) {
                   "'sources' for a list of those "
                   "that the program has")
       ->required();
-  app->add_option("--scale", arguments->scale,
-                  "Unit of a mesh file in mm, e.g. 1000 for metres (default: as the file says)")
-      ->type_name("S")
+  option(app, "--scale", arguments->scale, "S",
+         "Unit of a mesh file in mm, e.g. 1000 for metres (default: as the file says)")
       ->check(number_between(1e-6, 1e6, "mm"));
   add_volume_option(*app, arguments->volume);
   add_regions_from_option(*app, arguments->regions_from);
-  app->add_option("--skip", arguments->skip,
+  repeated_option(app, "--skip", arguments->skip, "NAME",
                   "Ignore the structure NAME if it is damaged; with --scenario leave it out in any case; may be "
-                  "repeated")
-      ->type_name("NAME")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+                  "repeated");
   CLI::Option* scenario = app->add_flag("--scenario", arguments->scenario,
                                         "Write a commented scenario for this patient instead: the region that each "
                                         "structure is taken as, the structures that are left out and why, and one "
                                         "needle");
-  app->add_option("-o,--output", arguments->output,
-                  "With --scenario: the file to write; it gives the patient's path relative to its own folder "
-                  "(default: standard output, with the patient's absolute path)")
-      ->type_name("FILE.toml")
+  option(app, "-o,--output", arguments->output, "FILE.toml",
+         "With --scenario: the file to write; it gives the patient's path relative to its own folder "
+         "(default: standard output, with the patient's absolute path)")
       ->needs(scenario);
   return {app, [arguments](Console& console) { return run_info(*arguments, console); }};
 }

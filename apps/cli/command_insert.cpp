@@ -178,42 +178,37 @@ std::string tissues_text(const Scenario& scenario) {
 }
 
 /// The table of --print-tissues: the default values, or the values of a scenario.
-Result<std::string> tissues_text(const InsertArguments& arguments) {
-  if (!arguments.scenario.empty()) {
-    const auto scenario = read_scenario(arguments.scenario, arguments.settings);
-    return scenario ? Result<std::string>(tissues_text(*scenario)) : scenario.error();
-  }
+std::string tissues_text(const InsertArguments& arguments) {
+  if (!arguments.scenario.empty()) return tissues_text(need(read_scenario(arguments.scenario, arguments.settings)));
   if (!arguments.settings.empty())
-    return input_error("insert --print-tissues", "--set has no scenario to change",
-                       "Give a scenario file, for example scenarios/demo.toml");
+    throw Failed{input_error("insert --print-tissues", "--set has no scenario to change",
+                             "Give a scenario file, for example scenarios/demo.toml")};
   return tissues_text(Scenario{});
 }
 
 /// Reads summary.json from the result folder.
-Result<Json> written_summary(const std::filesystem::path& folder) {
+Json written_summary(const std::filesystem::path& folder) {
   const std::filesystem::path path = folder / "summary.json";
   std::ifstream file(path);
   Json json = Json::parse(file, nullptr, false);
-  if (json.is_discarded()) return failure(path.string(), "cannot be read back", "Check the result folder");
+  if (json.is_discarded()) throw Failed{failure(path.string(), "cannot be read back", "Check the result folder")};
   return json;
 }
 
 bool is_recording(const std::string& file) { return is_hdf5_file(file) && !is_meant_as_model(file); }
 
 /// Prepares the input: a recording with its steps, or a scenario or saved model, which has no steps.
-Result<RecordedRun> what_to_run(const InsertArguments& arguments, const Progress& progress) {
-  if (is_recording(arguments.scenario)) return recorded_run(arguments.scenario, arguments.settings, progress);
-  auto prepared = prepare_model_file(arguments.scenario, arguments.settings, progress);
-  if (!prepared) return prepared.error();
+RecordedRun what_to_run(const InsertArguments& arguments, const Progress& progress) {
+  if (is_recording(arguments.scenario)) return need(recorded_run(arguments.scenario, arguments.settings, progress));
   RecordedRun run;
-  run.prepared = std::move(*prepared);
+  run.prepared = need(prepare_model_file(arguments.scenario, arguments.settings, progress));
   return run;
 }
 
 /// The JSON document of --json: the summary, and the map if there is one.
-Result<Json> result_json(const std::filesystem::path& folder, const std::optional<HoleMap>& map) {
-  Result<Json> json = written_summary(folder);
-  if (json && map) (*json)["map"] = Json::parse(hole_map_json(*map));
+Json result_json(const std::filesystem::path& folder, const std::optional<HoleMap>& map) {
+  Json json = written_summary(folder);
+  if (map) json["map"] = Json::parse(hole_map_json(*map));
   return json;
 }
 
@@ -228,17 +223,13 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
     return console.said();
   }
   if (arguments.print_tissues) {
-    const auto text = tissues_text(arguments);
-    if (!text) return text.error();
-    console.say(*text);
+    console.say(tissues_text(arguments));
     return console.said();
   }
   if (arguments.scenario.empty())
     return input_error("insert", "no scenario is given", "Give a scenario file, for example scenarios/demo.toml");
-  const std::filesystem::path folder =
-      arguments.output.empty() ? std::filesystem::path("out") / std::filesystem::path(arguments.scenario).stem()
-                               : std::filesystem::path(arguments.output);
-  if (Result<> writable = check_output_folder(folder); !writable) return writable;
+  const std::filesystem::path folder = result_folder(arguments.output, arguments.scenario);
+  need(check_output_folder(folder));
   if (arguments.map && is_recording(arguments.scenario)) {
     return input_error(arguments.scenario,
                        "it is a recording, whose base motion belongs to one needle and cannot be repeated through "
@@ -247,10 +238,9 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
   }
 
   warn_before_start(arguments.scenario, arguments.settings, console);
-  Result<RecordedRun> source = what_to_run(arguments, console.progress());
-  if (!source) return source.error();
-  const PreparedModel& prepared = source->prepared;
-  const bool repeats = !source->steps.empty();
+  auto source = what_to_run(arguments, console.progress());
+  const PreparedModel& prepared = source.prepared;
+  const bool repeats = !source.steps.empty();
   if (repeats && same_file(folder / "run.h5", arguments.scenario))
     return input_error(folder.string(), "the recording would be replaced by its repetition",
                        "Give another folder with -o");
@@ -258,26 +248,24 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
   const auto warn = [&] {
     for (const std::string& warning : warnings) console.warn(warning);
   };
-  const Result<InsertResult> result = insert(
-      prepared, folder, {.map = arguments.map, .recorded = source->steps, .where = arguments.scenario, .begin = warn},
-      console.progress());
-  if (!result) return result.error();
+  const auto result = need(insert(
+      prepared, folder, {.map = arguments.map, .recorded = source.steps, .where = arguments.scenario, .begin = warn},
+      console.progress()));
 
-  const Summary& summary = result->summary;
+  const Summary& summary = result.summary;
   for (std::size_t i = warnings.size(); i < summary.warnings.size(); ++i) console.warn(summary.warnings[i]);
   console.say(fmt::format("{}: {} nodes, {} tetrahedra, {}", prepared.model->scenario().name, summary.nodes,
                           summary.tets, prepared.model->info().method));
-  if (result->probe) {
+  if (result.probe) {
     Facts probe;
-    for (const ProbeFact& fact : probe_facts(*result->probe)) probe.add(fact.name, fact.text);
+    for (const ProbeFact& fact : probe_facts(*result.probe)) probe.add(fact.name, fact.text);
     console.say(probe.text() + "\n");
   }
   console.say(summary_text(summary));
-  if (result->map) console.say("\n" + map_text(*result->map));
-  if (repeats) console.say("Repeated the recording: " + compare_forces(source->steps, result->steps) + ".");
+  if (result.map) console.say("\n" + map_text(*result.map));
+  if (repeats) console.say("Repeated the recording: " + compare_forces(source.steps, result.steps) + ".");
   console.say(fmt::format("Report: {}", (folder / "report.html").string()));
-  const Result<Json> json = result_json(folder, result->map);
-  return json ? console.write_json(*json) : Result<>(json.error());
+  return console.write_json(result_json(folder, result.map));
 }
 
 }  // namespace
@@ -286,17 +274,11 @@ Command add_insert_command(CLI::App& program) {
   auto arguments = std::make_shared<InsertArguments>();
   CLI::App* app =
       program.add_subcommand("insert", "Insert a needle: run a scenario and write forces, displacements and a report");
-  app->add_option(
-         "SCENARIO", arguments->scenario,
+  option(app, "SCENARIO", arguments->scenario, "SCENARIO.toml",
          "Scenario file (TOML; --print-schema lists its keys), a model saved by `stylet prepare`, or the run.h5 of a "
-         "recording, whose base motion is then repeated step by step")
-      ->type_name("SCENARIO.toml");
-  app->add_option("-o,--output", arguments->output, "Folder for the results (default: out/NAME)")->type_name("OUT/");
-  app->add_option("--set", arguments->settings,
-                  "Set a key of the scenario, e.g. --set mesh.nodes=5000; may be repeated")
-      ->type_name("KEY=VALUE")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+         "recording, whose base motion is then repeated step by step");
+  option(app, "-o,--output", arguments->output, "OUT/", "Folder for the results (default: out/NAME)");
+  settings_option(app, arguments->settings, "mesh.nodes=5000");
   // Short options for the settings in which this program and Goksel et al. 2005 differ.
   const auto shorthand = [&](const char* option, const char* key, const char* meaning) {
     app->add_option_function<std::string>(

@@ -38,16 +38,17 @@ struct MeshArguments {
 };
 
 /// Parses arguments NAME=CANONICAL.
-Result<RegionNames> parse_regions(const std::vector<std::string>& arguments) {
+RegionNames parse_regions(const std::vector<std::string>& arguments) {
   RegionNames regions;
   for (const std::string& argument : arguments) {
     const std::size_t split = argument.rfind('=');
     if (split == std::string::npos || split == 0 || split + 1 == argument.size()) {
-      return input_error(fmt::format("--region {}", argument), "NAME=CANONICAL is expected",
-                         "Write e.g. --region 'PTV 1=prostate'");
+      throw Failed{input_error(fmt::format("--region {}", argument), "NAME=CANONICAL is expected",
+                               "Write e.g. --region 'PTV 1=prostate'")};
     }
     if (!regions.emplace(argument.substr(0, split), argument.substr(split + 1)).second) {
-      return input_error(fmt::format("--region {}", argument), "this name is given twice", "Give each name only once");
+      throw Failed{
+          input_error(fmt::format("--region {}", argument), "this name is given twice", "Give each name only once")};
     }
   }
   return regions;
@@ -114,34 +115,31 @@ Result<> run_mesh(const MeshArguments& arguments, Console& console) {
   if (output.extension() != ".vtu") {
     return input_error(arguments.output, "the model is written as VTU", "Give a name that ends in .vtu");
   }
-  if (Result<> writable = check_output_file(output); !writable) return writable;
+  need(check_output_file(output));
 
-  const Result<RegionNames> regions = parse_regions(arguments.regions);
-  if (!regions) return regions.error();
+  const auto regions = parse_regions(arguments.regions);
 
-  const MeshOptions options = mesher_options(arguments, *regions);
+  const MeshOptions options = mesher_options(arguments, regions);
 
   const auto start = std::chrono::steady_clock::now();
-  const Result<PatientFile> input =
-      read_patient(arguments.input, {.scale = arguments.scale, .regions_from = arguments.regions_from}, options,
-                   {.volume = arguments.volume});
-  if (!input) return input.error();
-  Result<MeshedAnatomy> model =
-      std::visit([&](const auto& content) { return model_of(content, arguments, options, console); }, input->content);
-  if (!model) return model.error();
-  model->report.notes.insert(model->report.notes.begin(), input->notes.begin(), input->notes.end());
-  model->report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const auto input =
+      need(read_patient(arguments.input, {.scale = arguments.scale, .regions_from = arguments.regions_from}, options,
+                        {.volume = arguments.volume}));
+  auto model = need(
+      std::visit([&](const auto& content) { return model_of(content, arguments, options, console); }, input.content));
+  model.report.notes.insert(model.report.notes.begin(), input.notes.begin(), input.notes.end());
+  model.report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
-  if (Result<> made = make_folder(output.has_parent_path() ? output.parent_path() : "."); !made) return made;
-  if (Result<> written = write_vtu(model->mesh, output); !written) return written;
+  need(make_folder(output.has_parent_path() ? output.parent_path() : "."));
+  need(write_vtu(model.mesh, output));
 
-  std::vector<std::string> warnings = input->warnings;
-  if (const std::string flat = nearly_flat_warning(model->mesh); !flat.empty()) warnings.push_back(flat);
+  std::vector<std::string> warnings = input.warnings;
+  if (const std::string flat = nearly_flat_warning(model.mesh); !flat.empty()) warnings.push_back(flat);
   for (const std::string& warning : warnings) console.warn(arguments.output + ": " + warning);
   console.say(fmt::format("{} → {}", arguments.input, arguments.output));
-  console.say(report_text(model->report));
+  console.say(report_text(model.report));
   Json json = {{"input", arguments.input}, {"output", arguments.output}};
-  json.update(report_json(model->report));
+  json.update(report_json(model.report));
   json["warnings"] = warnings;
   return console.write_json(json);
 }
@@ -156,35 +154,25 @@ Command add_mesh_command(CLI::App& program) {
                   "Contours (DICOM RTSTRUCT or a folder with one, contour JSON), label mask (NIfTI, NRRD, MetaImage, "
                   "DICOM SEG) or tetrahedral mesh (VTU, legacy VTK, gmsh MSH, MEDIT, TetGen)")
       ->required();
-  app->add_option("-o,--output", arguments->output, "Model to write")->type_name("MODEL.vtu")->required();
-  app->add_option("--nodes", arguments->nodes,
-                  "Number of nodes; the mesh has this number within 3 % (default: the number of the preset)")
-      ->type_name("N")
+  option(app, "-o,--output", arguments->output, "MODEL.vtu", "Model to write")->required();
+  option(app, "--nodes", arguments->nodes, "N",
+         "Number of nodes; the mesh has this number within 3 % (default: the number of the preset)")
       ->check(whole_number_between(kFewestNodes, kMostNodes));
-  app->add_option("--preset", arguments->preset,
-                  "standard: all anatomy, about 3,000 nodes; paper: prostate and surroundings only, 570 nodes")
-      ->type_name("standard|paper")
+  option(app, "--preset", arguments->preset, "standard|paper",
+         "standard: all anatomy, about 3,000 nodes; paper: prostate and surroundings only, 570 nodes")
       ->check(one_of({"standard", "paper"}));
-  app->add_option("--scale", arguments->scale,
-                  "Unit of length of a mesh file in mm, e.g. 1000 for metres (default: as the file says)")
-      ->type_name("S")
+  option(app, "--scale", arguments->scale, "S",
+         "Unit of length of a mesh file in mm, e.g. 1000 for metres (default: as the file says)")
       ->check(number_between(1e-6, 1e6, "mm"));
   add_volume_option(*app, arguments->volume);
   add_regions_from_option(*app, arguments->regions_from);
-  app->add_option("--region", arguments->regions,
+  repeated_option(app, "--region", arguments->regions, "NAME=CANONICAL",
                   "Take the structure, label or region NAME as CANONICAL, e.g. 'PTV 1=prostate' or 2=prostate; may be "
-                  "repeated, also to make one region of several; the others are recognised by their names")
-      ->type_name("NAME=CANONICAL")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  app->add_option("--skip", arguments->skip,
-                  "Leave out the structure or label NAME, for example because it is drawn wrongly; may be repeated")
-      ->type_name("NAME")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  app->add_option("--cull", arguments->cull_mm,
-                  "Drop a contour point if it is closer than this to the contour without it [mm] (default: 0.3)")
-      ->type_name("MM")
+                  "repeated, also to make one region of several; the others are recognised by their names");
+  repeated_option(app, "--skip", arguments->skip, "NAME",
+                  "Leave out the structure or label NAME, for example because it is drawn wrongly; may be repeated");
+  option(app, "--cull", arguments->cull_mm, "MM",
+         "Drop a contour point if it is closer than this to the contour without it [mm] (default: 0.3)")
       ->check(number_between(0, 5, "mm"));
   app->add_flag("--no-band", arguments->no_band,
                 "Do not add the stiff band that holds the gland if the input has no pubic arch");

@@ -23,15 +23,14 @@ struct PhantomArguments {
 
 Result<> run_phantom(const PhantomArguments& arguments, Console& console) {
   const std::filesystem::path folder = arguments.folder;
-  if (Result<> writable = check_output_folder(folder); !writable) return writable;
+  need(check_output_folder(folder));
 
   const ContourSet patient = demo_patient({.seed = arguments.seed, .slice_spacing_mm = arguments.spacing_mm});
   const std::filesystem::path dicom = folder / "phantom.dcm";
   const std::filesystem::path contours = folder / "phantom.json";
-  if (Result<> made = make_folder(folder); !made) return made;
-  if (Result<> written = write_rtstruct(patient, dicom, {.name = "STYLET^PHANTOM", .id = "STYLET"}); !written)
-    return written;
-  if (Result<> written = write_contour_json(patient, contours); !written) return written;
+  need(make_folder(folder));
+  need(write_rtstruct(patient, dicom, {.name = "STYLET^PHANTOM", .id = "STYLET"}));
+  need(write_contour_json(patient, contours));
 
   Description description = describe(patient);
   description.json["seed"] = arguments.seed;
@@ -48,15 +47,12 @@ Command add_phantom_command(CLI::App& program) {
   auto arguments = std::make_shared<PhantomArguments>();
   CLI::App* app =
       program.add_subcommand("phantom", "Write the contours of the demo patient as DICOM RTSTRUCT and as JSON");
-  app->add_option("-o,--output", arguments->folder, "Folder to write phantom.dcm and phantom.json into")
-      ->type_name("CASE/")
+  option(app, "-o,--output", arguments->folder, "CASE/", "Folder to write phantom.dcm and phantom.json into")
       ->required();
-  app->add_option("--seed", arguments->seed, "Number that varies the anatomy; 0 is the reference patient")
-      ->type_name("N")
+  option(app, "--seed", arguments->seed, "N", "Number that varies the anatomy; 0 is the reference patient")
       ->check(whole_number_between(0, std::numeric_limits<long long>::max()))
       ->capture_default_str();
-  app->add_option("--spacing", arguments->spacing_mm, "Distance between slices [mm], 1 to 10")
-      ->type_name("MM")
+  option(app, "--spacing", arguments->spacing_mm, "MM", "Distance between slices [mm], 1 to 10")
       ->check(number_between(1, 10, "mm"))
       ->capture_default_str();
   return {app, [arguments](Console& console) { return run_phantom(*arguments, console); }};

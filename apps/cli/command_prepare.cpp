@@ -32,19 +32,17 @@ double peak_mb() {
 }
 
 /// The file to write. If a folder is given, the file's name is the model's key, by which `stylet serve` finds it.
-Result<std::filesystem::path> output_file(const PrepareArguments& arguments) {
+std::filesystem::path output_file(const PrepareArguments& arguments) {
   const std::filesystem::path output = arguments.output;
   std::error_code code;
   if (!output.has_filename() || std::filesystem::is_directory(output, code)) {
-    const auto scenario = read_scenario(arguments.scenario, arguments.settings);
-    if (!scenario) return scenario.error();
-    const auto key = model_key(*scenario);
-    if (!key) return key.error();
-    return output / (*key + ".stylet");
+    const auto scenario = need(read_scenario(arguments.scenario, arguments.settings));
+    const auto key = need(model_key(scenario));
+    return output / (key + ".stylet");
   }
   if (output.extension() == ".stylet") return output;
-  return input_error(arguments.output, "a saved model has the extension .stylet",
-                     "Give a name that ends in .stylet, or a folder (with / at the end)");
+  throw Failed{input_error(arguments.output, "a saved model has the extension .stylet",
+                           "Give a name that ends in .stylet, or a folder (with / at the end)")};
 }
 
 Result<> run_prepare(const PrepareArguments& arguments, Console& console) {
@@ -53,19 +51,17 @@ Result<> run_prepare(const PrepareArguments& arguments, Console& console) {
                        "Give the scenario from which the model is to be made");
   }
   const auto file = output_file(arguments);
-  if (!file) return file.error();
-  const std::filesystem::path& output = *file;
-  if (Result<> writable = check_output_file(output); !writable) return writable;
+  const std::filesystem::path& output = file;
+  need(check_output_file(output));
   warn_before_start(arguments.scenario, arguments.settings, console);
-  const Result<PreparedModel> prepared = prepare_model_file(arguments.scenario, arguments.settings, console.progress());
-  if (!prepared) return prepared.error();
-  const Model& model = *prepared->model;
+  const auto prepared = need(prepare_model_file(arguments.scenario, arguments.settings, console.progress()));
+  const Model& model = *prepared.model;
   const auto start = std::chrono::steady_clock::now();
-  if (Result<> made = make_folder(output.has_parent_path() ? output.parent_path() : "."); !made) return made;
-  if (Result<> saved = save_model(model, output, prepared->notes, console.progress()); !saved) return saved;
+  need(make_folder(output.has_parent_path() ? output.parent_path() : "."));
+  need(save_model(model, output, prepared.notes, console.progress()));
   const double save_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
-  for (const std::string& warning : prepared->warnings()) console.warn(warning);
+  for (const std::string& warning : prepared.warnings()) console.warn(warning);
   const double megabytes = static_cast<double>(std::filesystem::file_size(output)) / 1048576.0;
   const auto& statistics = model.tissue().statistics();
   Facts facts;
@@ -74,7 +70,7 @@ Result<> run_prepare(const PrepareArguments& arguments, Console& console) {
   facts.add("corridor", fmt::format("{} nodes", model.tissue().corridor().size()));
   facts.add("time", fmt::format("{:.1f} s to mesh, {:.1f} s to compile ({:.1f} s of it to factorise the stiffness), "
                                 "{:.1f} s to save; {:.0f} MB of memory",
-                                prepared->mesh_s, prepared->model_s, statistics.factor_seconds, save_s, peak_mb()));
+                                prepared.mesh_s, prepared.model_s, statistics.factor_seconds, save_s, peak_mb()));
   facts.add("file", fmt::format("{:.0f} MB", megabytes));
   console.say(fmt::format("{} → {}", arguments.scenario, output.string()));
   console.say(facts.text());
@@ -85,14 +81,14 @@ Result<> run_prepare(const PrepareArguments& arguments, Console& console) {
                              {"element", to_string(model.tissue().element())},
                              {"corridor_nodes", model.tissue().corridor().size()},
                              {"seconds",
-                              {{"mesh", prepared->mesh_s},
-                               {"model", prepared->model_s},
+                              {{"mesh", prepared.mesh_s},
+                               {"model", prepared.model_s},
                                {"factor", statistics.factor_seconds},
                                {"save", save_s}}},
                              {"factor_mb", statistics.factor_mb},
                              {"peak_memory_mb", peak_mb()},
                              {"file_mb", megabytes},
-                             {"warnings", prepared->warnings()}});
+                             {"warnings", prepared.warnings()}});
 }
 
 }  // namespace
@@ -101,16 +97,11 @@ Command add_prepare_command(CLI::App& program) {
   auto arguments = std::make_shared<PrepareArguments>();
   CLI::App* app =
       program.add_subcommand("prepare", "Mesh and compile a scenario and save the model, which then starts in seconds");
-  app->add_option("SCENARIO", arguments->scenario, "Scenario file (TOML)")->type_name("SCENARIO.toml")->required();
-  app->add_option("-o,--output", arguments->output,
-                  "Model to write, or a folder in which `stylet serve --models` finds the model")
-      ->type_name("MODEL.stylet")
+  option(app, "SCENARIO", arguments->scenario, "SCENARIO.toml", "Scenario file (TOML)")->required();
+  option(app, "-o,--output", arguments->output, "MODEL.stylet",
+         "Model to write, or a folder in which `stylet serve --models` finds the model")
       ->required();
-  app->add_option("--set", arguments->settings,
-                  "Set a key of the scenario, e.g. --set mesh.nodes=5000; may be repeated")
-      ->type_name("KEY=VALUE")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  settings_option(app, arguments->settings, "mesh.nodes=5000");
   return {app, [arguments](Console& console) { return run_prepare(*arguments, console); }};
 }
 

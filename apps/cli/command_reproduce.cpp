@@ -31,18 +31,17 @@ std::string table_text(const std::vector<reproduce::TableRow>& rows) {
 
 Result<> run_reproduce(const ReproduceArguments& arguments, Console& console) {
   const std::filesystem::path folder = arguments.output;
-  if (Result<> writable = check_output_folder(folder); !writable) return writable;
+  need(check_output_folder(folder));
   reproduce::ReproduceOptions options;
   options.quick = arguments.quick;
   options.command = fmt::format("stylet reproduce -o {}{}", arguments.output, arguments.quick ? " --quick" : "");
   const Progress progress = console.progress();
-  const Result<reproduce::Reproduction> reproduction = reproduce::reproduce(options, progress);
-  if (!reproduction) return reproduction.error();
-  if (Result<> written = reproduce::write_reproduction(*reproduction, folder); !written) return written;
-  for (const std::string& note : reproduction->notes) console.warn(note);
-  console.say(table_text(reproduction->table));
+  const auto reproduction = need(reproduce::reproduce(options, progress));
+  need(reproduce::write_reproduction(reproduction, folder));
+  for (const std::string& note : reproduction.notes) console.warn(note);
+  console.say(table_text(reproduction.table));
   console.say(fmt::format("Page: {}", (folder / "report.html").string()));
-  return console.write_json(Json::parse(reproduce::reproduction_json(*reproduction)));
+  return console.write_json(Json::parse(reproduce::reproduction_json(reproduction)));
 }
 
 }  // namespace
@@ -52,9 +51,7 @@ Command add_reproduce_command(CLI::App& program) {
   CLI::App* app = program.add_subcommand(
       "reproduce",
       "Reproduce the figures and numbers of Goksel et al. 2005, beside the results of this program's default");
-  app->add_option("-o,--output", arguments->output, "Folder for the page and the numbers")
-      ->type_name("OUT/")
-      ->required();
+  option(app, "-o,--output", arguments->output, "OUT/", "Folder for the page and the numbers")->required();
   app->add_flag("--quick", arguments->quick,
                 "Use fewer sizes and repeats and one shorter insertion; takes less than a minute");
   return {app, [arguments](Console& console) { return run_reproduce(*arguments, console); }};

@@ -152,9 +152,8 @@ Result<> add_inputs(const ServeArguments& arguments, serve::SessionSettings& ses
       session.archive = file.parent_path().parent_path();
       session.replay = file.parent_path().filename().string();
     } else {
-      auto source = case_of(input, arguments, console);
-      if (!source) return source.error();
-      session.cases.push_back(std::move(*source));
+      auto source = need(case_of(input, arguments, console));
+      session.cases.push_back(std::move(source));
     }
   }
   return Ok{};
@@ -196,18 +195,16 @@ Result<> run_serve(const ServeArguments& arguments, Console& console) {
   settings.session.recordings = arguments.recordings;
   settings.session.keep_bytes = keep_bytes(arguments.keep_GB);
   settings.session.say = [&console](const std::string& text) { console.warn(text); };
-  if (Result<> writable = check_output_folder(arguments.recordings); !writable) return writable;
-  if (auto added = add_inputs(arguments, settings.session, console); !added) return added;
+  need(check_output_folder(arguments.recordings));
+  need(add_inputs(arguments, settings.session, console));
   EndSignal end;
-  auto igtl = open_igtl(arguments.igtl);
-  if (!igtl) return igtl.error();
-  settings.session.companion = igtl->companion;
+  auto igtl = need(open_igtl(arguments.igtl));
+  settings.session.companion = igtl.companion;
   if (arguments.igtl.hand == "igtl") settings.session.runner.late_after_s = kIgtlLateAfter_s;
   const std::string recordings = settings.session.recordings.string();
-  auto server = serve::Server::open(std::move(settings));
-  if (!server) return server.error();
-  (*server)->start();
-  console.say(fmt::format("Open {} in a browser. Ctrl-C ends it.", (*server)->url()));
+  auto server = need(serve::Server::open(std::move(settings)));
+  server->start();
+  console.say(fmt::format("Open {} in a browser. Ctrl-C ends it.", server->url()));
   const std::string limit =
       arguments.keep_GB > 0.0
           ? fmt::format("The oldest recordings are removed when all together take more than {:g} GB (--keep).",
@@ -215,14 +212,14 @@ Result<> run_serve(const ServeArguments& arguments, Console& console) {
           : "Recordings may fill the disk (--keep 0).";
   console.say(fmt::format("Recordings are written to {}. {}", recordings, limit));
   if (arguments.no_token) console.warn("Every user of this machine can open this address and move the needle.");
-  if (!igtl->warning.empty()) console.warn(igtl->warning);
-  if (igtl->companion) console.say(igtl->said);
-  Json json{{"url", (*server)->url()}, {"port", (*server)->port()}};
-  if (igtl->companion) json["igtl"] = igtl->json;
-  if (auto said = console.write_json(json); !said) return said;
+  if (!igtl.warning.empty()) console.warn(igtl.warning);
+  if (igtl.companion) console.say(igtl.said);
+  Json json{{"url", server->url()}, {"port", server->port()}};
+  if (igtl.companion) json["igtl"] = igtl.json;
+  need(console.write_json(json));
   end.wait();
   console.say("Closing the recording, then the program ends.");
-  (*server)->stop();
+  server->stop();
   return Ok{};
 }
 
@@ -232,45 +229,34 @@ Command add_serve_command(CLI::App& program) {
   auto arguments = std::make_shared<ServeArguments>();
   CLI::App* app = program.add_subcommand(
       "serve", "Run a live simulation in which you move the needle in a browser. Not a medical device");
-  app->add_option("INPUT", arguments->inputs,
-                  "Scenario files (TOML), models saved by `stylet prepare`, folders of such files, or the run.h5 of a "
-                  "recording to replay")
-      ->type_name("SCENARIO.toml")
+  option(app, "INPUT", arguments->inputs, "SCENARIO.toml",
+         "Scenario files (TOML), models saved by `stylet prepare`, folders of such files, or the run.h5 of a "
+         "recording to replay")
       ->required();
-  app->add_option("--port", arguments->port, "Port to listen on; 0 chooses a free port")
+  option(app, "--port", arguments->port, "P", "Port to listen on; 0 chooses a free port")
       ->capture_default_str()
-      ->type_name("P")
       ->check(whole_number_between(0, 65535));
-  app->add_option("--address", arguments->address,
-                  "Address to listen on; the default serves this machine only, 0.0.0.0 every network of this machine")
-      ->capture_default_str()
-      ->type_name("IP");
-  app->add_option("--token", arguments->token,
-                  "Token that viewers must know (default: a random token); safer in the environment variable, which "
-                  "other users of this machine cannot read")
-      ->envname("STYLET_TOKEN")
-      ->type_name("TEXT");
+  option(app, "--address", arguments->address, "IP",
+         "Address to listen on; the default serves this machine only, 0.0.0.0 every network of this machine")
+      ->capture_default_str();
+  option(app, "--token", arguments->token, "TEXT",
+         "Token that viewers must know (default: a random token); safer in the environment variable, which "
+         "other users of this machine cannot read")
+      ->envname("STYLET_TOKEN");
   app->add_flag("--no-token", arguments->no_token,
                 "Let every user of this machine open the page without a token, for example where nobody else can log "
                 "in");
-  app->add_option("-o,--output", arguments->recordings, "Folder for the recordings, one for each insertion")
-      ->capture_default_str()
-      ->type_name("OUT/");
-  app->add_option(
-         "--keep", arguments->keep_GB,
+  option(app, "-o,--output", arguments->recordings, "OUT/", "Folder for the recordings, one for each insertion")
+      ->capture_default_str();
+  option(app, "--keep", arguments->keep_GB, "GB",
          "Gigabytes that all recordings may take together; the oldest are removed when they take more; 0 sets no limit")
       ->capture_default_str()
-      ->type_name("GB")
       ->check(CLI::Range(0.0, 1e6));
-  app->add_option("--models", arguments->models,
-                  "Folder in which compiled models are kept, so that a case opens at once the next time (default: "
-                  "~/.cache/stylet/models); \"\" keeps none")
-      ->type_name("MODELS/");
-  app->add_option("--set", arguments->settings,
-                  "Set a key of the scenarios, e.g. --set mesh.nodes=5000; may be repeated")
-      ->type_name("KEY=VALUE")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  option(app, "--models", arguments->models, "MODELS/",
+         "Folder in which compiled models are kept, so that a case opens at once the next time (default: "
+         "~/.cache/stylet/models); \"\" keeps none");
+  repeated_option(app, "--set", arguments->settings, "KEY=VALUE",
+                  "Set a key of the scenarios, e.g. --set mesh.nodes=5000; may be repeated");
   add_igtl_options(*app, arguments->igtl);
   return {app, [arguments](Console& console) { return run_serve(*arguments, console); }};
 }

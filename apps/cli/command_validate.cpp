@@ -107,7 +107,7 @@ Result<> run_validate(const ValidateArguments& arguments, Console& console) {
     return input_error("validate", "no folder for the page is given",
                        "Give a folder with -o, or list the rows with --list");
   const fs::path folder = arguments.output;
-  if (Result<> writable = check_output_folder(folder); !writable) return writable;
+  need(check_output_folder(folder));
   if (!arguments.data.empty() && !fs::is_directory(arguments.data))
     return input_error("--data", fmt::format("'{}' is not a folder", arguments.data),
                        "Give the folder of the shared data");
@@ -118,20 +118,19 @@ Result<> run_validate(const ValidateArguments& arguments, Console& console) {
   options.data = data_folder(arguments);
   options.command = command_text(arguments);
   const Progress progress = console.progress();
-  const Result<Validation> validation = validate::validate(options, progress);
-  if (!validation) return validation.error();
-  if (Result<> written = validate::write_validation(*validation, folder); !written) return written;
+  const auto validation = need(validate::validate(options, progress));
+  need(validate::write_validation(validation, folder));
 
-  if (!validation->rows.empty()) console.say(outcome_text(*validation) + "\n\n" + rows_text(*validation));
-  for (const Row& row : validation->rows) {
+  if (!validation.rows.empty()) console.say(outcome_text(validation) + "\n\n" + rows_text(validation));
+  for (const Row& row : validation.rows) {
     if (row.verdict == Verdict::missed)
       console.say(fmt::format("\nMISSED {}: {}. {}", row.spec.id, row.spec.claim, row.note()));
     if (row.verdict == Verdict::skipped) console.say(fmt::format("\nskipped {}: {}", row.spec.id, row.note()));
   }
-  if (validation->sensitivity) console.say("\n" + sensitivity_text(*validation->sensitivity));
+  if (validation.sensitivity) console.say("\n" + sensitivity_text(*validation.sensitivity));
   console.say(fmt::format("\nPage: {}", (folder / "validate.html").string()));
-  if (Result<> json = console.write_json(Json::parse(validate::validation_json(*validation))); !json) return json;
-  for (const Row& row : validation->rows) {
+  need(console.write_json(Json::parse(validate::validation_json(validation))));
+  for (const Row& row : validation.rows) {
     if (row.verdict == Verdict::crashed)
       return failure("row " + row.spec.id, row.note(), "See the page for the other rows, which were measured");
   }
@@ -144,15 +143,11 @@ Command add_validate_command(CLI::App& program) {
   auto arguments = std::make_shared<ValidateArguments>();
   CLI::App* app = program.add_subcommand(
       "validate", "Compare the model with analytical solutions, independent code and published measurements");
-  app->add_option("-o,--output", arguments->output, "Folder for the page and the numbers")->type_name("OUT/");
-  app->add_option("--only", arguments->only, "Measure these rows only (--list prints their names)")
-      ->type_name("ID")
-      ->expected(1, -1);
-  app->add_option(
-         "--data", arguments->data,
+  option(app, "-o,--output", arguments->output, "OUT/", "Folder for the page and the numbers");
+  option(app, "--only", arguments->only, "ID", "Measure these rows only (--list prints their names)")->expected(1, -1);
+  option(app, "--data", arguments->data, "FOLDER",
          "Folder of the shared data (default: $STYLET_SHARED_DATA, or ../shared/data); without this folder the "
-         "rows that need it are skipped")
-      ->type_name("FOLDER");
+         "rows that need it are skipped");
   app->add_flag("--quick", arguments->quick,
                 "Measure only rows that take at most a few seconds; takes less than a minute in all");
   app->add_flag("--list", arguments->list, "List the rows and do nothing else");

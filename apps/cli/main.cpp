@@ -29,13 +29,11 @@ constexpr int kBadInput = 2;
 
 void add_common_options(CLI::App& app, CommonOptions& common) {
   const std::string group = "Options of every command";
-  app.add_option("--json", common.json, "Write the result as JSON to this file; '-' for standard output")
-      ->type_name("FILE")
+  option(&app, "--json", common.json, "FILE", "Write the result as JSON to this file; '-' for standard output")
       ->group(group);
   app.add_flag("--quiet", common.quiet, "Print warnings and errors only")->group(group);
   app.add_flag("--verbose", common.verbose, "Print more details of the work")->group(group);
-  app.add_option("--threads", common.threads, "Use at most N threads (default: one per core)")
-      ->type_name("N")
+  option(&app, "--threads", common.threads, "N", "Use at most N threads (default: one per core)")
       ->check(whole_number_between(1, 1024))
       ->group(group);
 }
@@ -100,8 +98,12 @@ int run(int argc, char** argv, Console& console) {
   if (const Result<> configured = console.configure(common); !configured) return report(console, configured.error());
   for (const Command& command : commands) {
     if (!command.app->parsed()) continue;
-    const Result<> done = command.run(console);
-    return done ? kOk : report(console, done.error());
+    try {
+      const Result<> done = command.run(console);
+      return done ? kOk : report(console, done.error());
+    } catch (const Failed& failed) {
+      return report(console, failed.error);
+    }
   }
   return kBadInput;
 }

@@ -4,6 +4,7 @@
 #include "stylet/core/result.hpp"
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 namespace stylet::cli {
@@ -14,6 +15,11 @@ Result<> check_output_file(const std::filesystem::path& path);
 
 /// Checks that a folder exists or can be made, and is writable. Creates nothing.
 Result<> check_output_folder(const std::filesystem::path& path);
+
+/// The folder for the results of a scenario: the wanted one, or out/NAME of the scenario's file.
+inline std::filesystem::path result_folder(const std::string& wanted, const std::filesystem::path& scenario) {
+  return wanted.empty() ? "out" / scenario.stem() : std::filesystem::path(wanted);
+}
 
 /// Makes a folder and its parent folders; does nothing if it exists.
 Result<> make_folder(const std::filesystem::path& path);

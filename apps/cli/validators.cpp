@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "validators.hpp"
 
+#include "command.hpp"
+
 #include "stylet/core/nearest_name.hpp"
 
 #include <fmt/format.h>
@@ -55,17 +57,15 @@ CLI::Validator one_of(std::vector<std::string> words) {
 }
 
 void add_volume_option(CLI::App& app, int& volume) {
-  app.add_option("--volume", volume,
-                 "Number of the volume, from 1, in a mask file that contains several (default: the only volume)")
-      ->type_name("N")
+  option(&app, "--volume", volume, "N",
+         "Number of the volume, from 1, in a mask file that contains several (default: the only volume)")
       ->check(whole_number_between(1, 1'000'000));
 }
 
 void add_regions_from_option(CLI::App& app, std::string& name) {
-  app.add_option("--regions-from", name,
-                 "Array of a mesh file that is its regions: cell array (VTU, VTK), $ElementData (gmsh), 'attribute N' "
-                 "(TetGen) (default: the format's own regions, or the only array of whole numbers that can be them)")
-      ->type_name("NAME");
+  option(&app, "--regions-from", name, "NAME",
+         "Array of a mesh file that is its regions: cell array (VTU, VTK), $ElementData (gmsh), 'attribute N' "
+         "(TetGen) (default: the format's own regions, or the only array of whole numbers that can be them)");
 }
 
 }  // namespace stylet::cli

@@ -2,6 +2,7 @@
 #include "image_maker.hpp"
 
 #include "core/clock.hpp"
+#include "scene_points.hpp"
 #include "stylet/imaging/fluoroscope.hpp"
 #include "stylet/imaging/pressing_probe.hpp"
 #include "stylet/imaging/scan_conversion.hpp"
@@ -28,19 +29,13 @@ constexpr double kImageRange_dB = 100.0;  // of the values that are sent; the pa
 
 ImageJson json_of(const Vec3& x) { return {x.x(), x.y(), x.z()}; }
 
-std::vector<SurfacePoint> every_node(const TetMesh& mesh) {
-  std::vector<SurfacePoint> points;
-  for (Index node = 0; node < mesh.node_count(); ++node) points.push_back({{node, -1, -1}, {1.0, 0.0, 0.0}});
-  return points;
-}
-
 /// Displacement by the loop's forces of all nodes of the mesh and, between the nodes, beside the needle.
 class LoopMotion {
  public:
   explicit LoopMotion(const std::shared_ptr<const DisplayField>& field)
       : field_(field),
         load_(field->make_load()),
-        near_(std::shared_ptr<const Model>(field, &field->model()), every_node(field->model().mesh())),
+        near_(std::shared_ptr<const Model>(field, &field->model()), nodes_as_points(field->model().mesh())),
         nodes_(static_cast<std::size_t>(field->model().mesh().node_count())) {
     std::iota(nodes_.begin(), nodes_.end(), Index{0});
     const Scenario& scenario = field->model().scenario();

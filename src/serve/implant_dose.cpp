@@ -144,7 +144,9 @@ ImplantScore ImplantDose::score(const Structure& target, std::size_t seeds) cons
   const DoseVolume dvh(target.field.dose_Gy(), target.volume_mm3);
   constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
   const double prescription_Gy = implant_->prescription_Gy();
-  ImplantScore score{.seeds = seeds, .d90_Gy = dvh.dose_of_percent(90.0)};
+  ImplantScore score;
+  score.seeds = static_cast<std::int64_t>(seeds);
+  score.d90_Gy = dvh.dose_of_percent(90.0);
   score.d90_percent = prescription_Gy > 0.0 ? 100.0 * score.d90_Gy / prescription_Gy : nothing;
   score.v100_percent = prescription_Gy > 0.0 ? dvh.percent_above(prescription_Gy) : nothing;
   return score;

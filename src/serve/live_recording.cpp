@@ -2,6 +2,7 @@
 #include "live_recording.hpp"
 
 #include "private_files.hpp"
+#include "scene_points.hpp"
 #include "wall_clock.hpp"
 
 #include <algorithm>
@@ -14,13 +15,6 @@ namespace {
 
 constexpr double kStill_N = 1e-4;         ///< a smaller change of the axial force counts as none
 constexpr double kShareForFrames = 0.05;  ///< share of this thread's time for frames of the recording
-
-std::vector<SurfacePoint> nodes_as_points(const TetMesh& mesh) {
-  std::vector<SurfacePoint> points;
-  points.reserve(static_cast<std::size_t>(mesh.node_count()));
-  for (Index node = 0; node < mesh.node_count(); ++node) points.push_back({{node, -1, -1}, {1.0, 0.0, 0.0}});
-  return points;
-}
 
 }  // namespace
 

@@ -12,7 +12,7 @@ namespace stylet::serve {
 
 namespace {
 
-using MessageJson = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 
 constexpr std::array kStates{"loading", "ready", "failed"};
 
@@ -22,8 +22,8 @@ Parcel packed(wire::Kind kind, wire::Bytes bytes) {
 
 Parcel json_parcel(wire::Kind kind, const std::string& text) { return packed(kind, wire::encode(kind, text, 0)); }
 
-Parcel json_parcel(wire::Kind kind, const MessageJson& json) {
-  return json_parcel(kind, json.dump(-1, ' ', false, MessageJson::error_handler_t::replace));
+Parcel json_parcel(wire::Kind kind, const Json& json) {
+  return json_parcel(kind, json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 Parcel parcel_of(const std::shared_ptr<const Scene>& scene) {
@@ -45,19 +45,18 @@ Parcel parcel_of(const LiveImplant& implant) { return json_parcel(wire::Kind::im
 Parcel parcel_of(const LiveSeeds& seeds) { return json_parcel(wire::Kind::seeds, seeds_text(seeds)); }
 
 Parcel parcel_of(const LiveMap& live) {
-  return json_parcel(wire::Kind::map, MessageJson{{"map", live.map ? MessageJson::parse(hole_map_json(*live.map))
-                                                                   : MessageJson(nullptr)},
-                                                  {"why_not", live.why_not},
-                                                  {"predicted", live.predicted},
-                                                  {"predicting", live.predicting}});
+  return json_parcel(wire::Kind::map, Json{{"map", live.map ? Json::parse(hole_map_json(*live.map)) : Json(nullptr)},
+                                           {"why_not", live.why_not},
+                                           {"predicted", live.predicted},
+                                           {"predicting", live.predicting}});
 }
 
 Parcel parcel_of(const LiveEvent& event) {
-  return json_parcel(wire::Kind::event, MessageJson{{"kind", event.kind},
-                                                    {"time_s", event.time_s},
-                                                    {"depth_mm", event.depth_mm},
-                                                    {"force_N", event.force_N},
-                                                    {"region", event.region}});
+  return json_parcel(wire::Kind::event, Json{{"kind", event.kind},
+                                             {"time_s", event.time_s},
+                                             {"depth_mm", event.depth_mm},
+                                             {"force_N", event.force_N},
+                                             {"region", event.region}});
 }
 
 }  // namespace
@@ -76,54 +75,53 @@ Parcel as_parcel(const Message& message) {
 }
 
 Parcel parcel_of(const Notice& notice) {
-  return json_parcel(wire::Kind::notice, MessageJson{{"text", notice.text}, {"cure", notice.cure}});
+  return json_parcel(wire::Kind::notice, Json{{"text", notice.text}, {"cure", notice.cure}});
 }
 
 Parcel parcel_of(const SessionStatus& s, const OwnStatus& own) {
-  return json_parcel(wire::Kind::status,
-                     MessageJson{{"state", kStates.at(static_cast<std::size_t>(s.state))},
-                                 {"stage", s.stage},
-                                 {"fraction", s.fraction < 0.0 ? MessageJson(nullptr) : MessageJson(s.fraction)},
-                                 {"message", s.failure.text},
-                                 {"cure", s.failure.cure},
-                                 {"mode", s.replay.name.empty() ? "live" : "replay"},
-                                 {"paused", s.paused},
-                                 {"insertion", s.insertion},
-                                 {"hole", s.hole},
-                                 {"inside", s.inside},
-                                 {"held", own.held},
-                                 {"asking", own.asking},
-                                 {"viewers", own.viewers},
-                                 {"device", s.device},
-                                 {"device_problem", s.device_problem},
-                                 {"image",
-                                  {{"shown", s.image.shown},
-                                   {"problem", s.image.problem},
-                                   {"stage", s.image.stage},
-                                   {"probe_device", s.image.probe_device},
-                                   {"probe_problem", s.image.probe_problem}}},
-                                 {"recording",
-                                  {{"name", s.recording.name},
-                                   {"seconds", s.recording.seconds},
-                                   {"problem", s.recording.problem},
-                                   {"warning", s.recording.warning}}},
-                                 {"replay",
-                                  {{"name", s.replay.name},
-                                   {"time_s", s.replay.time_s},
-                                   {"duration_s", s.replay.duration_s},
-                                   {"playing", s.replay.rate > 0.0},
-                                   {"rate", s.replay.rate}}},
-                                 {"loop",
-                                  {{"steps", s.loop.steps},
-                                   {"missed", s.loop.missed},
-                                   {"p50_us", s.loop.p50_us},
-                                   {"p99_us", s.loop.p99_us},
-                                   {"max_us", s.loop.max_us},
-                                   {"rights", s.loop.rights}}},
-                                 {"you_hold", own.you_hold},
-                                 {"you_ask", own.you_ask},
-                                 {"dropped_messages", own.dropped_messages},
-                                 {"skipped_frames", own.skipped_frames}});
+  return json_parcel(wire::Kind::status, Json{{"state", kStates.at(static_cast<std::size_t>(s.state))},
+                                              {"stage", s.stage},
+                                              {"fraction", s.fraction < 0.0 ? Json(nullptr) : Json(s.fraction)},
+                                              {"message", s.failure.text},
+                                              {"cure", s.failure.cure},
+                                              {"mode", s.replay.name.empty() ? "live" : "replay"},
+                                              {"paused", s.paused},
+                                              {"insertion", s.insertion},
+                                              {"hole", s.hole},
+                                              {"inside", s.inside},
+                                              {"held", own.held},
+                                              {"asking", own.asking},
+                                              {"viewers", own.viewers},
+                                              {"device", s.device},
+                                              {"device_problem", s.device_problem},
+                                              {"image",
+                                               {{"shown", s.image.shown},
+                                                {"problem", s.image.problem},
+                                                {"stage", s.image.stage},
+                                                {"probe_device", s.image.probe_device},
+                                                {"probe_problem", s.image.probe_problem}}},
+                                              {"recording",
+                                               {{"name", s.recording.name},
+                                                {"seconds", s.recording.seconds},
+                                                {"problem", s.recording.problem},
+                                                {"warning", s.recording.warning}}},
+                                              {"replay",
+                                               {{"name", s.replay.name},
+                                                {"time_s", s.replay.time_s},
+                                                {"duration_s", s.replay.duration_s},
+                                                {"playing", s.replay.rate > 0.0},
+                                                {"rate", s.replay.rate}}},
+                                              {"loop",
+                                               {{"steps", s.loop.steps},
+                                                {"missed", s.loop.missed},
+                                                {"p50_us", s.loop.p50_us},
+                                                {"p99_us", s.loop.p99_us},
+                                                {"max_us", s.loop.max_us},
+                                                {"rights", s.loop.rights}}},
+                                              {"you_hold", own.you_hold},
+                                              {"you_ask", own.you_ask},
+                                              {"dropped_messages", own.dropped_messages},
+                                              {"skipped_frames", own.skipped_frames}});
 }
 
 }  // namespace stylet::serve

@@ -5,20 +5,6 @@
 
 namespace stylet::serve {
 
-namespace {
-
-std::optional<ImplantScore> score_of(const std::optional<RecordedScore>& dose) {
-  if (!dose) return std::nullopt;
-  ImplantScore score;
-  score.seeds = static_cast<std::size_t>(dose->seeds);
-  score.d90_Gy = dose->d90_Gy;
-  score.d90_percent = dose->d90_percent;
-  score.v100_percent = dose->v100_percent;
-  return score;
-}
-
-}  // namespace
-
 ReplayedSeeds::ReplayedSeeds(const Replay& replay) : replay_(replay) {
   const TetMesh& mesh = replay.recording().mesh;
   const Topology topology(mesh);
@@ -35,8 +21,8 @@ std::optional<LiveImplant> ReplayedSeeds::news() {
   LiveImplant now;
   now.seeds = implant.seeds_after(acts);
   now.planned_seeds = implant.plan.seeds.size();
-  now.now = score_of(implant.dose_after(static_cast<std::int64_t>(acts)));
-  now.planned = score_of(implant.dose_after(RecordedScore::kOfPlan));
+  if (const auto dose = implant.dose_after(static_cast<std::int64_t>(acts))) now.now = ImplantScore{*dose};
+  if (const auto dose = implant.dose_after(RecordedScore::kOfPlan)) now.planned = ImplantScore{*dose};
   return now;
 }
 

@@ -30,11 +30,6 @@ constexpr double kMm3PerCc = 1000.0;
 
 Json numbers(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-std::string hex(const results::Colour& colour) {
-  const auto byte = [](double share) { return static_cast<int>(std::lround(255.0 * share)); };
-  return fmt::format("#{:02x}{:02x}{:02x}", byte(colour[0]), byte(colour[1]), byte(colour[2]));
-}
-
 constexpr double kBefore_mm = 5.0;   ///< surfaces are refined from this distance in front of the entry point …
 constexpr double kBeyond_mm = 10.0;  ///< … to this distance beyond the planned depth
 
@@ -104,7 +99,7 @@ Json regions_json(const TetMesh& mesh, const std::vector<int>& targets) {
                        {"volume_cc", volume[r] / kMm3PerCc}});
   for (const results::RegionView& view : results::region_views(mesh, targets)) {
     Json& region = regions[static_cast<std::size_t>(view.region)];
-    region["color"] = hex(view.colour);
+    region["color"] = results::hex(view.colour);
     region["opacity"] = view.opacity;
     region["target"] = view.target;
     region["background"] = view.background;

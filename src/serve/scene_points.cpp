@@ -3,6 +3,13 @@
 
 namespace stylet::serve {
 
+std::vector<SurfacePoint> nodes_as_points(const TetMesh& mesh) {
+  std::vector<SurfacePoint> points;
+  points.reserve(static_cast<std::size_t>(mesh.node_count()));
+  for (Index node = 0; node < mesh.node_count(); ++node) points.push_back({{node, -1, -1}, {1.0, 0.0, 0.0}});
+  return points;
+}
+
 std::vector<SurfacePoint> ScenePoints::on_mesh() const {
   std::vector<SurfacePoint> points;
   points.reserve(nodes.size() + fines.size());

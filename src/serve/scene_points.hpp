@@ -2,8 +2,12 @@
 #pragma once
 
 #include "stylet/geom/fine_surface.hpp"
+#include "stylet/geom/tet_mesh.hpp"
 
 namespace stylet::serve {
+
+/// All nodes of a mesh as surface points.
+std::vector<SurfacePoint> nodes_as_points(const TetMesh& mesh);
 
 /// The points of a scene: nodes of the mesh, then points between them where surfaces are refined.
 struct ScenePoints {

@@ -6,14 +6,6 @@
 
 namespace stylet::serve {
 
-namespace {
-
-RecordedScore recorded_score(const ImplantScore& score, std::int64_t acts) {
-  return {acts, static_cast<std::int64_t>(score.seeds), score.d90_Gy, score.d90_percent, score.v100_percent};
-}
-
-}  // namespace
-
 SeedJournal::News SeedJournal::news(const LiveImplant& implant, bool score_is_current, double time_s) {
   News out;
   std::vector<SeedAct> settled;
@@ -45,11 +37,11 @@ SeedJournal::News SeedJournal::news(const LiveImplant& implant, bool score_is_cu
   acts_ += static_cast<std::int64_t>(out.acts.size());
   if (implant.planned && !has_plan_dose_) {
     has_plan_dose_ = true;
-    out.doses.push_back(recorded_score(*implant.planned, RecordedScore::kOfPlan));
+    out.doses.emplace_back(*implant.planned).acts = RecordedScore::kOfPlan;
   }
   if (implant.now && score_is_current && dose_after_ != acts_) {
     dose_after_ = acts_;
-    out.doses.push_back(recorded_score(*implant.now, acts_));
+    out.doses.emplace_back(*implant.now).acts = acts_;
   }
   return out;
 }

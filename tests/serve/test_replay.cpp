@@ -224,7 +224,7 @@ TEST(SeedJournal, tells_each_drop_and_each_seed_that_was_taken_back_once) {
   ASSERT_EQ(news.acts.size(), 1u);
   EXPECT_EQ(news.acts[0].kind, SeedAct::Kind::dropped);
   EXPECT_EQ(news.acts[0].time_s, 1.5);
-  implant.now = ImplantScore{.seeds = 2, .d90_Gy = 20.0};
+  implant.now = ImplantScore{{.seeds = 2, .d90_Gy = 20.0}};
   EXPECT_TRUE(journal.news(implant, false, 1.6).doses.empty()) << "it may be of other seeds";
   news = journal.news(implant, true, 1.6);
   EXPECT_TRUE(news.acts.empty());

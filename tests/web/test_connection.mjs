@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { WebSocketTransport } from 'live/src/connection.ts';
+import { Connection } from 'live/src/connection.ts';
 import { Session } from 'live/src/session.ts';
 
 let socket;
@@ -21,7 +21,7 @@ globalThis.WebSocket = class {
 const [HAND, COMMAND] = [16, 17];
 
 test('a connection that cannot take more loses a hand on its way, but no command and not that the hand let go', () => {
-  const session = new Session(new WebSocketTransport('ws://localhost/live'));
+  const session = new Session(new Connection('ws://localhost/live'));
   session.start();
   session.connected = true;
   session.status = { state: 'ready', mode: 'live', you_hold: true };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { makePatient } from 'live/dev/fake_patient';
+import { makePatient } from './made_up_patient';
 import { regionTriangles } from 'live/src/scene';
 import { ContourCutter } from 'live/src/sections/contour_cutter';
 

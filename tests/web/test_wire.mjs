@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { encodeFrame, encodeScene, encodeText } from 'live/dev/encode';
-import { makePatient } from 'live/dev/fake_patient';
+import { encodeFrame, encodeScene, encodeText } from './encode';
+import { makePatient } from './made_up_patient';
 import { decode, encodeCommand, encodeHand, WireError } from 'live/src/wire';
 
 const f32 = (...values) => Float32Array.of(...values);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Labels of events above a plot, in as many lanes as needed so that they do not overlap, each with a line to its point.
+import { circle, strokeLine } from './canvas';
 import type uPlot from 'uplot';
 import { canvasFont, font, fontSize, INK, lineScale, PALE } from './plot_style';
 
@@ -85,14 +86,10 @@ export function drawEvents(plot: uPlot, events: PlacedEvent[]): void {
     ctx.strokeStyle = label.placed.event.color ?? PALE;
     ctx.lineWidth = unit;
     ctx.setLineDash([3 * unit, 3 * unit]);
-    ctx.beginPath();
-    ctx.moveTo(x, label.lane < free ? middle + lane / 2 - 2 * ratio : top);
-    ctx.lineTo(x, dotInside ? y : top + height);
-    ctx.stroke();
+    strokeLine(ctx, x, label.lane < free ? middle + lane / 2 - 2 * ratio : top, x, dotInside ? y : top + height);
     ctx.setLineDash([]);
     if (dotInside) {
-      ctx.beginPath();
-      ctx.arc(x, y, 3.5 * unit, 0, 2 * Math.PI);
+      circle(ctx, x, y, 3.5 * unit);
       ctx.fillStyle = '#fff';
       ctx.fill();
       ctx.strokeStyle = label.placed.event.color ?? INK;

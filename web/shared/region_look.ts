@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The appearance of a region's surface, and the row of controls that changes it.
 import type * as THREE from 'three';
-import { element, switchOf } from './dom';
+import { element, setSlider, slider, switchOf } from './dom';
 
 const HARDLY = 0.005;  // surfaces with less opacity are invisible
 const OPAQUE = 0.99;
@@ -41,21 +41,15 @@ export function applyColors(surface: RegionLook, byDisplacement: boolean): void 
 /** The row of controls of a surface. @param changed called after the opacity or the visibility has changed */
 export function regionRow(surface: { visible: boolean; opacity: number }, name: string, color: string, changed: () => void): HTMLElement {
   const row = element('div', 'region');
-  const slider = element('input');
-  slider.type = 'range';
-  slider.min = '0';
-  slider.max = '1';
-  slider.step = '0.01';
-  slider.value = String(surface.opacity);
-  slider.setAttribute('aria-label', `Opacity of ${name}`);
-  slider.addEventListener('input', () => {
-    surface.opacity = slider.valueAsNumber;
+  const opacity = slider(`Opacity of ${name}`, '0.01', (value) => {
+    surface.opacity = value;
     changed();
   });
+  setSlider(opacity, 0, 1, surface.opacity);
   row.append(switchOf(name, surface.visible, color, (on) => {
     surface.visible = on;
     changed();
-  }), slider);
+  }), opacity);
   return row;
 }
 

@@ -9,12 +9,11 @@
 namespace stylet::cli {
 
 Result<> bench_dose_command(const BenchArguments&, Console& console) {
-  const auto rows = measure::bench_dose({}, console.progress());
-  if (!rows) return rows.error();
+  const auto rows = need(measure::bench_dose({}, console.progress()));
   Table table({"formalism", "sources", "points", "formula [s]", "table [s]", "formula / table", "one more [ms]",
                "table / one more", "making the table [ms]", "off by [%]"});
   Json json{{"rows", Json::array()}};
-  for (const measure::DoseRow& row : *rows) {
+  for (const measure::DoseRow& row : rows) {
     table.row({row.formalism, std::to_string(row.sources), std::to_string(row.points), number(row.exact_s, 2),
                number(row.table_s, 3), number(row.exact_s / row.table_s, 1), number(1000.0 * row.one_more_s, 2),
                number(row.table_s / row.one_more_s, 0), number(1000.0 * row.make_table_s, 1),

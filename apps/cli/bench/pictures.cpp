@@ -9,15 +9,12 @@ namespace stylet::cli {
 Result<> bench_pictures_command(const BenchArguments& arguments, Console& console) {
   measure::PicturesBenchOptions options;
   if (arguments.nodes > 0) options.largest = arguments.nodes;
-  if (auto checked = check_nodes("pictures", options.largest, 3000,
-                                 "Give 3000 or more, the nodes of the coarsest mesh that is measured");
-      !checked)
-    return checked;
-  const auto rows = measure::bench_pictures(options, console.progress());
-  if (!rows) return rows.error();
+  need(check_nodes("pictures", options.largest, 3000,
+                   "Give 3000 or more, the nodes of the coarsest mesh that is measured"));
+  const auto rows = need(measure::bench_pictures(options, console.progress()));
   Table table({"nodes", "picture", "median [ms]", "99 % [ms]", "max [ms]", "before [s]"});
   Json json{{"rows", Json::array()}};
-  for (const measure::PictureRow& row : *rows) {
+  for (const measure::PictureRow& row : rows) {
     table.row({std::to_string(row.nodes), row.picture, number(1e-3 * row.cpu_us.p50, 2),
                number(1e-3 * row.cpu_us.p99, 2), number(1e-3 * row.cpu_us.max, 2), number(row.prepare_s, 1)});
     json["rows"].push_back({{"nodes", row.nodes},

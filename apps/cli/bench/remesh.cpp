@@ -108,17 +108,16 @@ Result<> bench_remesh_command(const BenchArguments& arguments, Console& console)
   if (nodes < smallest || nodes > largest)
     return input_error("--nodes", fmt::format("remesh takes {} to {} nodes, not {}", smallest, largest, nodes),
                        "Give a number in this range, which the memory of the full inverse limits");
-  const auto rows = measure::bench_remeshing(sizes_up_to(nodes), console.progress());
-  if (!rows) return rows.error();
+  const auto rows = need(measure::bench_remeshing(sizes_up_to(nodes), console.progress()));
   const std::vector<std::string> methods{"shortcut", "bordered", "woodbury", "bcs", "inverse"};
   std::vector<std::string> header{"nodes"};
   for (const std::string& method : methods) header.push_back(method + " [µs]");
   Table table(header);
   Json json{{"rows", Json::array()}};
-  for (std::size_t i = 0; i + methods.size() <= rows->size(); i += methods.size()) {
-    std::vector<std::string> cells{std::to_string((*rows)[i].nodes)};
+  for (std::size_t i = 0; i + methods.size() <= rows.size(); i += methods.size()) {
+    std::vector<std::string> cells{std::to_string(rows[i].nodes)};
     for (std::size_t k = 0; k < methods.size(); ++k) {
-      const measure::RemeshRow& row = (*rows)[i + k];
+      const measure::RemeshRow& row = rows[i + k];
       cells.push_back(fmt::format("{:.1f}", row.median_us));
       json["rows"].push_back({{"nodes", row.nodes}, {"method", row.method}, {"median_us", row.median_us}});
     }
@@ -126,13 +125,12 @@ Result<> bench_remesh_command(const BenchArguments& arguments, Console& console)
   }
   measure::EventBenchOptions options;
   if (arguments.nodes > 0) options.largest = kCoarsest;
-  const auto events = measure::bench_events(options, console.progress());
-  if (!events) return events.error();
-  add_events(*events, json);
+  const auto events = need(measure::bench_events(options, console.progress()));
+  add_events(events, json);
   json["machine"] = machine_json();
   console.say("Median processor time of one complete change of the mesh:");
   console.say(table.text());
-  say_events(*events, console);
+  say_events(events, console);
   return console.write_json(json);
 }
 

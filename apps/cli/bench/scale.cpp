@@ -13,14 +13,10 @@ namespace stylet::cli {
 Result<> bench_scale_command(const BenchArguments& arguments, Console& console) {
   measure::ScaleBenchOptions options;
   if (arguments.nodes > 0) options.largest = arguments.nodes;
-  if (auto checked =
-          check_nodes("scale", options.largest, 570, "Give 570 or more, the nodes of the mesh of Goksel et al. 2005");
-      !checked)
-    return checked;
+  need(check_nodes("scale", options.largest, 570, "Give 570 or more, the nodes of the mesh of Goksel et al. 2005"));
   if (arguments.contacts > 0) options.contacts = {arguments.contacts};
   options.steps = arguments.steps;
-  const auto rows = measure::bench_scale(options, console.progress());
-  if (!rows) return rows.error();
+  const auto rows = need(measure::bench_scale(options, console.progress()));
   Table table({"nodes",
                "element",
                "contacts",
@@ -45,9 +41,9 @@ Result<> bench_scale_command(const BenchArguments& arguments, Console& console) 
                "store [s]",
                "memory [MB]"});
   Json json{{"rows", Json::array()}};
-  for (const measure::ScaleRow& row : *rows) {
-    const auto coarsest = std::find_if(rows->begin(), rows->end(),
-                                       [&](const measure::ScaleRow& r) { return r.contacts == row.contacts; });
+  for (const measure::ScaleRow& row : rows) {
+    const auto coarsest =
+        std::find_if(rows.begin(), rows.end(), [&](const measure::ScaleRow& r) { return r.contacts == row.contacts; });
     const double ratio = row.cpu_us.p99 / coarsest->cpu_us.p99;
     table.row({std::to_string(row.nodes),
                row.element,

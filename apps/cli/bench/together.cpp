@@ -9,13 +9,12 @@ namespace stylet::cli {
 Result<> bench_together_command(const BenchArguments& arguments, Console& console) {
   measure::TogetherBenchOptions options;
   if (arguments.needles > 0) options.needles = arguments.needles;
-  const auto rows = measure::bench_together(options, console.progress());
-  if (!rows) return rows.error();
+  const auto rows = need(measure::bench_together(options, console.progress()));
   Table table({"at rest", "contacts", "of all", "steps", "flagged", "iterations", "p50 [µs]", "p99 [µs]", "max [µs]",
                "p50 / alone", "p99 / alone"});
   Json json{{"rows", Json::array()}};
-  const measure::StepTimes& alone = rows->front().cpu_us;
-  for (const measure::TogetherRow& row : *rows) {
+  const measure::StepTimes& alone = rows.front().cpu_us;
+  for (const measure::TogetherRow& row : rows) {
     table.row({std::to_string(row.at_rest), std::to_string(row.contacts), std::to_string(row.contacts_in_all),
                std::to_string(row.steps), std::to_string(row.flagged), number(row.iterations, 2),
                number(row.cpu_us.p50, 0), number(row.cpu_us.p99, 0), number(row.cpu_us.max, 0),

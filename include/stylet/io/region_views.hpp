@@ -12,6 +12,9 @@ namespace stylet::results {
 
 using Colour = std::array<double, 3>;  ///< sRGB, 0…1
 
+/// A colour for pages: "#d55e00".
+std::string hex(const Colour& colour);
+
 /// Appearance of a region in pictures and in the interactive view.
 struct RegionView {
   int region = 0;

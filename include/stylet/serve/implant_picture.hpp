@@ -20,12 +20,8 @@ struct ShownPlan {
   std::vector<bool> ready{};  ///< needles whose model is compiled, so that they can be chosen at once; empty: none is
 };
 
-/// The dose of some seeds.
-struct ImplantScore {
-  std::size_t seeds = 0;            ///< how many seeds it counts
-  double d90_Gy = 0.0;              ///< of the target
-  double d90_percent = 0.0;         ///< of the prescribed dose; NaN without one
-  double v100_percent = 0.0;        ///< of the target; NaN without a prescribed dose
+/// The dose of some seeds. A live session does not know how many acts were before it.
+struct ImplantScore : RecordedScore {
   double took_ms = 0.0;             ///< wall-clock time from the change of the seeds to D90
   std::vector<JudgedGoal> goals{};  ///< empty until they are computed, some time after D90
 };

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "figure6_text.hpp"
 #include "page_text.hpp"
-#include "report/assets.hpp"
 #include "report/page_template.hpp"
 #include "report/text.hpp"
 #include "reproduction_data.hpp"
@@ -201,10 +200,11 @@ Result<std::string> reproduction_page(const Reproduction& r) {
   for (const Figure6Run& run : r.figure6.runs)
     files += (files.empty() ? "<code>" : ", <code>") + html_escaped(curve_file(run)) + "</code>";
   const results::Slots slots{
-      {"version", html_escaped(r.version)},
+      {"title", "Goksel et al. 2005, reproduced"},
+      {"heading", "3D needle–tissue interaction, 2005 and now"},
+      {"kicker", "The paper and this program"},
       {"facts", html_escaped(fmt::format("Goksel et al., MICCAI 2005 · {} nodes · {} · {}", r.figure6.nodes,
                                          r.machine.processor, blas_text(r.machine)))},
-      {"css", std::string(results::reproduce_css())},
       {"tiles", tiles(r)},
       {"notes", notes_box(r.notes)},
       {"figure5", figure5_caption(r)},
@@ -223,11 +223,13 @@ Result<std::string> reproduction_page(const Reproduction& r) {
                       : fmt::format("{} times, and the median time of each iteration is used", r.figure6.repeats)},
       {"tolerance", order(measure::kLargestDifference)},
       {"curve_files", files},
-      {"versions", html_escaped("Stylet " + r.version)},
+      {"no_script",
+       "<noscript><p class=\"page note\">The plots need JavaScript. The same numbers are in the files beside this "
+       "page.</p></noscript>\n"},
+      {"data_id", "reproduction-data"},
       {"data", results::json_script_safe(page_data(r))},
-      {"js", results::script_safe(results::reproduce_js())},
   };
-  return results::fill_page(results::reproduce_template(), slots, "report.html");
+  return results::whole_page(results::reproduce_assets(), slots, "report.html");
 }
 
 }  // namespace stylet::reproduce

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "patients.hpp"
 
+#include "need.hpp"
 #include "stylet/io/label_image_io.hpp"
 #include "stylet/mesher/mesher.hpp"
 
@@ -12,23 +13,20 @@ bool Patients::is_there(const Context& context, PatientCase patient) {
   return patient == PatientCase::demo || context.data(kMask).has_value();
 }
 
-Result<TetMesh> Patients::mesh(Context& context, PatientCase patient) {
-  if (patient == PatientCase::demo) return context.demo_mesh();
+TetMesh Patients::mesh(Context& context, PatientCase patient) {
+  if (patient == PatientCase::demo) return need(context.demo_mesh());
   if (!mask_) {
-    const auto image = read_label_image(*context.data(kMask));
-    if (!image) return image.error();
+    const auto image = need(read_label_image(*context.data(kMask)));
     const Scenario standard = measure::demo_scenario();
     MeshOptions options;
     options.nodes = standard.mesh.nodes;
     options.layers = standard.anatomy;
-    auto meshed = mesh_labels(*image, options, context.progress());
-    if (!meshed) return meshed.error();
-    mask_ = std::move(meshed->mesh);
+    mask_ = need(mesh_labels(image, options, context.progress())).mesh;
   }
   return *mask_;
 }
 
-Result<std::shared_ptr<const RecordedRun>> Patients::run(Context& context, PatientCase patient, const PatientRun& how) {
+std::shared_ptr<const RecordedRun> Patients::run(Context& context, PatientCase patient, const PatientRun& how) {
   auto& kept = runs_[{patient, how}];
   if (kept) return kept;
   Scenario scenario = measure::demo_scenario();
@@ -47,13 +45,8 @@ Result<std::shared_ptr<const RecordedRun>> Patients::run(Context& context, Patie
   if (how.depth_mm) plan.depth_mm = *how.depth_mm;
   constexpr double step_mm = 0.04;
   scenario.run.dt_ms = std::clamp(1e3 * step_mm / how.speed_mm_per_s, 0.25, 8.0);
-  const auto own_mesh = mesh(context, patient);
-  if (!own_mesh) return own_mesh.error();
-  const auto model = Model::compile(scenario, *own_mesh, "the patient", {}, context.progress());
-  if (!model) return model.error();
-  auto recorded = record_run(*model, context.targets(), context.progress());
-  if (!recorded) return recorded.error();
-  kept = std::make_shared<const RecordedRun>(std::move(*recorded));
+  const auto model = need(Model::compile(scenario, mesh(context, patient), "the patient", {}, context.progress()));
+  kept = std::make_shared<const RecordedRun>(need(record_run(model, context.targets(), context.progress())));
   return kept;
 }
 

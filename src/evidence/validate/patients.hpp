@@ -27,17 +27,17 @@ struct PatientRun {
 };
 
 /// Insertions into patients with all defaults, each simulated once. A needle goes in 15 mm to the left of the gland's
-/// axis and stays there.
+/// axis and stays there. The functions throw Failed.
 class Patients {
  public:
   static constexpr const char* kMask = "msd_prostate_masks/prostate_00.nii.gz";
 
   /// Whether the data of a patient are available.
   static bool is_there(const Context& context, PatientCase patient);
-  Result<std::shared_ptr<const RecordedRun>> run(Context& context, PatientCase patient, const PatientRun& how);
+  std::shared_ptr<const RecordedRun> run(Context& context, PatientCase patient, const PatientRun& how);
 
  private:
-  Result<TetMesh> mesh(Context& context, PatientCase patient);
+  TetMesh mesh(Context& context, PatientCase patient);
 
   std::optional<TetMesh> mask_;
   std::map<std::pair<PatientCase, PatientRun>, std::shared_ptr<const RecordedRun>> runs_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/evidence/validate/row.hpp"
 
-#include "stylet/evidence/validate/context.hpp"
+#include "need.hpp"
 
 #include <fmt/format.h>
 
@@ -101,6 +101,11 @@ Row measure(const RowSpec& spec, Context& context) {
     } else {
       crash(found.error().message());
     }
+  } catch (const Skipped& skipped) {
+    row.verdict = Verdict::skipped;
+    row.finding = Finding::skip(skipped.why);
+  } catch (const Failed& failed) {
+    crash(failed.error.message());
   } catch (const std::exception& unexpected) {  // a failure of one row must not stop the others
     crash(fmt::format("unexpected failure: {}", unexpected.what()));
   }

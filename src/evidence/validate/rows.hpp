@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "need.hpp"
 #include "stylet/evidence/validate/context.hpp"
 #include "stylet/evidence/validate/row.hpp"
 

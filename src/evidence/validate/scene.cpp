@@ -15,6 +15,13 @@ Pose pose_at(const PlannedInsertion& insertion, double length_mm, double depth_m
 
 }  // namespace
 
+Block Block::of_one_tissue(TissuePreset preset) {
+  Block block;
+  block.gland_radius_mm = 0.0;
+  block.scenario.tissue_model.preset = preset;
+  return block;
+}
+
 TissueParameters& Block::tissue(const std::string& region) {
   return scenario.tissue.try_emplace(region, tissue_of(scenario, region)).first->second;
 }
@@ -123,11 +130,10 @@ double Drive::peak_N() const {
   return peak;
 }
 
-std::vector<double> column(const std::vector<DriveStep>& steps, double Step::*quantity) {
-  std::vector<double> values;
-  values.reserve(steps.size());
-  for (const DriveStep& s : steps) values.push_back(s.record.*quantity);
-  return values;
+Curve curve_of(const Drive& drive, const std::string& label, double Step::*over, double Step::*quantity) {
+  Curve curve{.label = label};
+  for (const DriveStep& s : drive.steps()) curve.add(s.record.*over, s.record.*quantity);
+  return curve;
 }
 
 }  // namespace stylet::validate

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "stylet/evidence/validate/row.hpp"
 #include "stylet/geom/box_mesh.hpp"
 #include "stylet/sim/simulation.hpp"
 
@@ -25,6 +26,9 @@ struct Block {
   double depth_mm = 60.0;                                 ///< depth to which compliance is prepared
   Eigen::Affine3d placing = Eigen::Affine3d::Identity();  ///< rigid motion or reflection of the whole scene
   Scenario scenario;  ///< all settings except patient, supports and insertions, which compile() sets
+
+  /// A block without the ball of the gland.
+  static Block of_one_tissue(TissuePreset preset = Scenario{}.tissue_model.preset);
 
   /// The tissue parameters of a region of the block, for changing them.
   TissueParameters& tissue(const std::string& region);
@@ -80,7 +84,8 @@ class Drive {
   unsigned flags_ = 0;
 };
 
-/// The values of one quantity in all steps of a drive.
-std::vector<double> column(const std::vector<DriveStep>& steps, double Step::*quantity);
+/// A quantity in all steps of a drive over another one: the axial force over the base depth by default.
+Curve curve_of(const Drive& drive, const std::string& label, double Step::*over = &Step::base_depth_mm,
+               double Step::*quantity = &Step::force_axial_N);
 
 }  // namespace stylet::validate

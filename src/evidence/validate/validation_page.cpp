@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "evidence/reproduce/page_text.hpp"
-#include "report/assets.hpp"
 #include "report/page_template.hpp"
 #include "report/text.hpp"
 #include "sensitivity_page.hpp"
@@ -144,19 +143,22 @@ Result<std::string> validation_page(const Validation& v) {
   std::string groups;
   for (const Group group : kGroups) groups += group_html(v, group);
   const results::Slots slots{
-      {"version", html_escaped(v.version)},
+      {"title", "Stylet, validated"},
+      {"heading", "What the model claims, and what it is checked against"},
+      {"kicker", "Validation"},
       {"facts", html_escaped(fmt::format("{} · {}", counted(static_cast<int>(v.rows.size()), "claim", "claims"),
                                          measure::this_machine().processor))},
-      {"css", std::string(results::validate_css())},
       {"summary", summary_html(v)},
       {"groups", groups},
       {"sensitivity", v.sensitivity ? sensitivity_html(*v.sensitivity) : std::string()},
       {"made", how_made(v)},
-      {"versions", html_escaped("Stylet " + v.version)},
+      {"no_script",
+       "<noscript><p class=\"page note\">The pictures need JavaScript. The same numbers are in the files beside "
+       "this page.</p></noscript>\n"},
+      {"data_id", "validation-data"},
       {"data", results::json_script_safe(page_data(v).dump())},
-      {"js", results::script_safe(results::validate_js())},
   };
-  return results::fill_page(results::validate_template(), slots, "validate.html");
+  return results::whole_page(results::validate_assets(), slots, "validate.html");
 }
 
 }  // namespace stylet::validate

@@ -7,12 +7,27 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 /// Records as objects of JSON. A number that does not exist is null.
 namespace stylet::record {
 
 using Json = nlohmann::ordered_json;
+
+/// A value, or null where there is none.
+template <class T>
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+/// A text, or null where it is empty.
+inline Json or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
+/// A number, or null where it is 0, which stands for none.
+inline Json or_null(double positive) { return positive > 0.0 ? Json(positive) : Json(nullptr); }
+
+/// Text for files and for scripts. Numbers that are not finite become null; bytes that are not UTF-8 are replaced.
+inline std::string pretty(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+inline std::string compact(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 /// A key or a word that a record cannot have.
 struct BadJson : std::runtime_error {

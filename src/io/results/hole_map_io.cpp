@@ -83,7 +83,7 @@ std::string hole_map_json(const HoleMap& map) {
   const Json json{{"columns", map.columns},   {"rows", map.rows},         {"pitch_mm", map.pitch_mm},
                   {"planned", map.planned},   {"in_place", map.in_place}, {"missing", map.missing},
                   {"holes", std::move(holes)}};
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return record::compact(json);
 }
 
 }  // namespace stylet

@@ -3,8 +3,11 @@
 
 #include "stylet/geom/topology.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <string_view>
 
 namespace stylet::results {
@@ -85,6 +88,11 @@ struct Contacts {
 };
 
 }  // namespace
+
+std::string hex(const Colour& colour) {
+  const auto byte = [](double share) { return static_cast<int>(std::lround(255.0 * share)); };
+  return fmt::format("#{:02x}{:02x}{:02x}", byte(colour[0]), byte(colour[1]), byte(colour[2]));
+}
 
 std::string readable_name(const std::string& name) {
   if (name == "ptv" || name == "ctv" || name == "gtv") {  // abbreviations of planning volumes

@@ -13,7 +13,7 @@ std::string summary_json(const Summary& summary, const ProbeReport* probe) {
   Json json = record::json_of(summary);
   if (probe) json["probe"] = probe_json(*probe);
   if (summary.in_place) json["in_place"] = record::json_of(*summary.in_place);
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return record::pretty(json);
 }
 
 Result<Summary> parse_summary_json(std::string_view text, const std::string& where) {

@@ -2,14 +2,7 @@
 // The WebSocket. When it closes, it is opened again after a wait that doubles each time up to a few seconds.
 import { decode, SUBPROTOCOL, WireError, type Message } from './wire';
 
-/** The connection of a page: to the server, or to a simulated server for tests. */
-export interface Transport {
-  open(listener: TransportListener): void;
-  /** Sends data. @param perishable the data are soon outdated, so they are dropped if the connection is busy */
-  send(data: ArrayBuffer, perishable?: boolean): void;
-}
-
-export interface TransportListener {
+export interface ConnectionListener {
   opened(): void;
   message(data: ArrayBuffer): void;
   closed(retryInMs: number): void;
@@ -19,13 +12,13 @@ const FIRST_WAIT_MS = 250;
 const LONGEST_WAIT_MS = 5000;
 const MOST_UNSENT_BYTES = 4096;  // with more unsent data, positions of the hand are dropped
 
-export class WebSocketTransport implements Transport {
+export class Connection {
   private socket: WebSocket | null = null;
   private wait = FIRST_WAIT_MS;
 
   constructor(private readonly address: string) {}
 
-  open(listener: TransportListener): void {
+  open(listener: ConnectionListener): void {
     const socket = new WebSocket(this.address, SUBPROTOCOL);
     socket.binaryType = 'arraybuffer';
     socket.addEventListener('open', () => {
@@ -44,6 +37,7 @@ export class WebSocketTransport implements Transport {
     this.socket = socket;
   }
 
+  /** Sends data. @param perishable the data are soon outdated, so they are dropped if the connection is busy */
   send(data: ArrayBuffer, perishable = false): void {
     const { socket } = this;
     if (socket?.readyState !== WebSocket.OPEN || (perishable && socket.bufferedAmount >= MOST_UNSENT_BYTES)) return;

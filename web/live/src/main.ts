@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import 'uplot/dist/uPlot.min.css';
 import './live.css';
-import { FakeServer } from '../dev/fake_server';
 import { Anatomy } from './anatomy';
 import { buildChart } from './chart/chart_panel';
-import { serverAddress, WebSocketTransport } from './connection';
+import { Connection, serverAddress } from './connection';
 import { Cover } from './controls/cover';
 import { makeHelp, makeRecordings } from './controls/dialogs';
 import { bindGamepad } from './controls/gamepad';
@@ -28,16 +27,13 @@ import { SectionPanel } from './sections/section_panel';
 import { Session } from './session';
 import { ViewPanel } from './view3d/view_panel';
 
-declare const __FAKE_SERVER__: boolean;
-
 function part(id: string): HTMLElement {
   const element = document.getElementById(id);
   if (!element) throw new Error(`The page has no element "${id}"`);
   return element;
 }
 
-const fake = __FAKE_SERVER__ && new URLSearchParams(location.search).has('fake');
-const session = new Session(fake ? new FakeServer() : new WebSocketTransport(serverAddress('live', true)));
+const session = new Session(new Connection(serverAddress('live', true)));
 session.start();  // first, so that the server answers while the page is built
 const hand = new HandControl(session);
 const help = makeHelp(session);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The state of the simulation, as this page has received it. Parts of the page listen to the topics that they need.
 import type { Command } from './commands';
-import { understood, type Transport, type TransportListener } from './connection';
+import { understood, type Connection, type ConnectionListener } from './connection';
 import type { LiveImage } from './imaging/image';
 import type { Dose, Implant, Plan, Seeds } from './implant/implant';
 import type { Scene } from './scene';
@@ -25,7 +25,7 @@ interface Topics {
 
 const MOST_EVENTS = 500;
 
-export class Session implements TransportListener {
+export class Session implements ConnectionListener {
   connected = false;
   lostAt = 0;                     // [ms] time at which the connection was lost; 0 if it was not
   attempts = 0;                   // failed attempts to connect since the page was opened or the connection was lost
@@ -44,10 +44,10 @@ export class Session implements TransportListener {
     link: [], status: [], scene: [], frame: [], event: [], notice: [], map: [], plan: [], implant: [], seeds: [], dose: [], image: [], restart: [],
   };
 
-  constructor(private readonly transport: Transport) {}
+  constructor(private readonly connection: Connection) {}
 
   start(): void {
-    this.transport.open(this);
+    this.connection.open(this);
   }
 
   on<K extends keyof Topics>(topic: K, listener: (what: Topics[K]) => void): void {
@@ -73,12 +73,12 @@ export class Session implements TransportListener {
   command(command: Command): void {
     if (command.do === 'release') this.letGo = true;
     if (command.do === 'take') this.letGo = false;
-    this.transport.send(encodeCommand(command));
+    this.connection.send(encodeCommand(command));
   }
 
   sendHand(hand: Hand): void {
     // A moving target is soon outdated and may be dropped. A stop must not be dropped.
-    if (this.steering) this.transport.send(encodeHand(hand), hand.speed > 0);
+    if (this.steering) this.connection.send(encodeHand(hand), hand.speed > 0);
   }
 
   /** Shows a message of this page. */
@@ -152,7 +152,7 @@ export class Session implements TransportListener {
     this.status = status;
     // If nobody holds the needle, this page takes it, so that a first visitor need not know that it must be held.
     const free = status.state === 'ready' && status.held === false && !status.you_hold;
-    if (free && !this.letGo) this.transport.send(encodeCommand({ do: 'take' }));
+    if (free && !this.letGo) this.connection.send(encodeCommand({ do: 'take' }));
     this.tell('status', status);
   }
 

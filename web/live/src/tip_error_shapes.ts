@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The shapes that show the tip error, in sections and in 3D: two dark marks with a white rim, visible against tissue
 // and needle, and between them a white line with dark edges, under which the needle remains visible.
+import { circle } from '../../shared/canvas';
 import { INK } from '../../shared/plot_style';
 
 export type Place = readonly [number, number];  // [px] of the picture
@@ -42,8 +43,7 @@ export function drawCross(context: CanvasRenderingContext2D, [u, v]: Place, radi
 /** Draws the place of the tip in the tissue. */
 export function drawRing(context: CanvasRenderingContext2D, [u, v]: Place, radius: number): void {
   context.fillStyle = '#ffffff';
-  context.beginPath();
-  context.arc(u, v, radius, 0, 2 * Math.PI);
+  circle(context, u, v, radius);
   context.fill();
   strokeMark(context, radius, () => context.arc(u, v, 0.8 * radius, 0, 2 * Math.PI));
 }

@@ -7,7 +7,7 @@ export class Moment {
   index: number;
 
   constructor(private readonly data: ReportData) {
-    this.index = data.firstFrame;
+    this.index = data.first_frame;
   }
 
   get frame(): Frame {
@@ -29,7 +29,7 @@ export class Moment {
   setTime(time: number): void {
     let best = 0;
     this.data.frames.forEach((f, i) => {
-      if (Math.abs(f.time - time) < Math.abs(this.data.frames[best].time - time)) best = i;
+      if (Math.abs(f.time_s - time) < Math.abs(this.data.frames[best].time_s - time)) best = i;
     });
     this.set(best);
   }

@@ -43,8 +43,8 @@ struct Curve {
     points      ///< measurements; drawn as dots
   };
   std::string label;
-  std::vector<double> x;
-  std::vector<double> y;
+  std::vector<double> x{};
+  std::vector<double> y{};
   Kind kind = Kind::ours;
 
   void add(double abscissa, double ordinate) {
@@ -66,10 +66,10 @@ struct Plot {
 /// The result of measuring a row.
 struct Finding {
   double value = std::numeric_limits<double>::quiet_NaN();
-  std::string note;        ///< how the value was obtained and what else the reader should know; full sentences
-  std::string why_missed;  ///< known reasons why the value is not accepted; shown only then
-  Plot plot;
-  std::string skipped;  ///< why nothing could be measured; if set, everything else is empty
+  std::string note{};        ///< how the value was obtained and what else the reader should know; full sentences
+  std::string why_missed{};  ///< known reasons why the value is not accepted; shown only then
+  Plot plot{};
+  std::string skipped{};  ///< why nothing could be measured; if set, everything else is empty
 
   static Finding skip(std::string reason) {
     Finding finding;

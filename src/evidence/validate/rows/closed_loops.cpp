@@ -24,30 +24,25 @@ constexpr double kBevel_deg = 20.0;
 constexpr int kDemoNodes = 2000;
 
 /// The block, with a symmetric or a bevelled tip.
-Result<std::shared_ptr<const Model>> block_of(TissuePreset preset, bool bevelled) {
+std::shared_ptr<const Model> block_of(TissuePreset preset, bool bevelled) {
   Block block;
   block.direction = {0.05, 0.1, 1.0};
   block.scenario.tissue_model.preset = preset;
   if (bevelled) block.scenario.needle.bevel_deg = kBevel_deg;
-  return block.compile();
+  return need(block.compile());
 }
 
 /// The demo patient with the demo's needle and template.
-Result<std::shared_ptr<const Model>> demo() {
-  auto meshed = measure::mesh_demo(kDemoNodes, {});
-  if (!meshed) return meshed.error();
-  return Model::compile(measure::demo_scenario(), std::move(meshed->mesh), "demo");
+std::shared_ptr<const Model> demo() {
+  auto meshed = need(measure::mesh_demo(kDemoNodes, {}));
+  return need(Model::compile(measure::demo_scenario(), std::move(meshed.mesh), "demo"));
 }
 
-Result<Finding> closed_loops(Context& context) {
-  std::vector<std::shared_ptr<const Model>> scenes;
-  for (const auto& scene : {block_of(TissuePreset::linear, false), block_of(TissuePreset::linear, true),
-                            block_of(TissuePreset::typical, true), demo()}) {
-    if (!scene) return scene.error();
-    scenes.push_back(*scene);
-  }
+Finding closed_loops(Context& context) {
+  const std::array scenes{block_of(TissuePreset::linear, false), block_of(TissuePreset::linear, true),
+                          block_of(TissuePreset::typical, true), demo()};
   Finding finding;
-  Curve bounds{.label = "energy gained", .x = {}, .y = {}, .kind = Curve::Kind::points};
+  Curve bounds{.label = "energy gained", .kind = Curve::Kind::points};
   double most = -1.0, least = 1.0, error = 0.0, stored = 0.0, unaccounted = 0.0;
   bool flagged = false;
   for (unsigned number = 0; number < kLoops; ++number) {

@@ -39,7 +39,7 @@ VecX solve_mixed(const MatX& A, const paper::CondensedSystem& system, const VecX
   return x;
 }
 
-Result<Finding> switches_and_rotations(Context&) {
+Finding switches_and_rotations(Context&) {
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal;
   const auto fill = [&](auto&& matrix) {
@@ -51,9 +51,8 @@ Result<Finding> switches_and_rotations(Context&) {
 
   paper::CondensedSystem system(kPoints);
   for (int p = 0; p < kPoints; ++p) system.add(A.block(0, 3 * p, 3 * p, 3), A.block<3, 3>(3 * p, 3 * p));
-  Finding finding;
-  finding.value = 0.0;
-  Curve curve{.label = "K_W", .x = {}, .y = {}};
+  Finding finding{.value = 0.0};
+  Curve curve{.label = "K_W"};
   int rotations = 0;
   for (int k = 1; k <= kChanges; ++k) {
     const int point = static_cast<int>(random() % kPoints);
@@ -74,8 +73,7 @@ Result<Finding> switches_and_rotations(Context&) {
     const VecX x = solve_mixed(A, system, y);
     const double error = (system.matrix() * y - x).cwiseAbs().maxCoeff() / x.cwiseAbs().maxCoeff();
     finding.value = worse(finding.value, error);
-    curve.x.push_back(k);
-    curve.y.push_back(error);
+    curve.add(k, error);
   }
   finding.note = fmt::format("{} points, {} switches and {} rotations in random order; the largest error of {} checks.",
                              kPoints, kChanges - rotations, rotations, kChanges / kEvery);

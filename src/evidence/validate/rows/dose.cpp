@@ -54,27 +54,25 @@ struct SyntheticPlan {
   SourceModel source;
 };
 
-Result<SyntheticPlan> read_synthetic_plan(const std::filesystem::path& path) {
+SyntheticPlan read_synthetic_plan(const std::filesystem::path& path) {
   SyntheticPlan plan;
   plan.file = nlohmann::json::parse(std::ifstream(path));
-  auto source = find_source(plan.file.at("source").get<std::string>());
-  if (!source) return source.error();
-  plan.source = *std::move(source);
+  auto source = need(find_source(plan.file.at("source").get<std::string>()));
+  plan.source = std::move(source);
   for (const nlohmann::json& at : plan.file.at("seeds_xyz_mm"))
     plan.seeds.push_back({.at_mm = vector_of(at), .axis = Vec3::UnitZ(), .weight = plan.file.at("S_K_U")});
   return plan;
 }
 
 /// Compares the geometry function of a line source with the integral of 1/r² along it.
-Result<Finding> line_geometry_is_an_integral(Context&) {
+Finding line_geometry_is_an_integral(Context&) {
   constexpr double kLength = 3.0;
-  Finding finding;
-  finding.value = 0.0;
+  Finding finding{.value = 0.0};
   finding.plot = {.x_label = "distance [mm]", .y_label = "r² G", .curves = {}};
   for (const double degrees : {1.0, 10.0, 30.0, 60.0, 90.0}) {
     const double cosine = std::cos(degrees * std::numbers::pi / 180.0);
     const double sine = std::sin(degrees * std::numbers::pi / 180.0);
-    Curve ours{.label = fmt::format("{:g}°", degrees), .x = {}, .y = {}};
+    Curve ours{.label = fmt::format("{:g}°", degrees)};
     for (double r = 2.0; r <= 50.0; r *= 1.05) {
       // Simpson's rule; the integrand is smooth at this distance.
       constexpr int kParts = 2000;
@@ -99,17 +97,15 @@ Result<Finding> line_geometry_is_an_integral(Context&) {
 
 /// Compares the DVH of an ellipsoid's samples with a dose that has a closed form: it falls linearly from the centre to
 /// the surface of concentric ellipsoids, so the volume within each dose is known.
-Result<Finding> dose_volume_of_an_ellipsoid(Context&) {
+Finding dose_volume_of_an_ellipsoid(Context&) {
   const Vec3 half(25.0, 18.0, 21.0);
-  const auto samples = sample_structure(ellipsoid(half), 1.0);
-  if (!samples) return samples.error();
+  const auto samples = need(sample_structure(ellipsoid(half), 1.0));
   std::vector<double> dose;
-  for (const Vec3& x : samples->points) dose.push_back(100.0 * (2.0 - x.cwiseQuotient(half).norm()));
-  const DoseVolume dvh(dose, samples->volume_mm3);
-  Finding finding;
-  finding.value = 0.0;
-  Curve ours{.label = "samples", .x = {}, .y = {}};
-  Curve theory{.label = "ellipsoid", .x = {}, .y = {}, .kind = Curve::Kind::reference};
+  for (const Vec3& x : samples.points) dose.push_back(100.0 * (2.0 - x.cwiseQuotient(half).norm()));
+  const DoseVolume dvh(dose, samples.volume_mm3);
+  Finding finding{.value = 0.0};
+  Curve ours{.label = "samples"};
+  Curve theory{.label = "ellipsoid", .kind = Curve::Kind::reference};
   for (int percent = 2; percent <= 98; percent += 2) {
     const double exact = 100.0 * (2.0 - std::cbrt(percent / 100.0));
     const double found = dvh.dose_of_percent(percent);
@@ -129,19 +125,17 @@ Result<Finding> dose_volume_of_an_ellipsoid(Context&) {
 }
 
 /// Compares the table, which computes the dose of many points, with the formula for all shipped sources.
-Result<Finding> table_of_the_formula(Context&) {
-  Finding finding;
-  finding.value = 0.0;
+Finding table_of_the_formula(Context&) {
+  Finding finding{.value = 0.0};
   finding.plot = {.x_label = "distance [mm]", .y_label = "largest error [%]", .log_y = true, .curves = {}};
   for (const SourceModel& source : known_sources()) {
-    const auto formula = Tg43::create(source, DoseFormalism::line2d);
-    if (!formula) return formula.error();
-    const RateTable table(*formula);
-    Curve curve{.label = source.name, .x = {}, .y = {}};
+    const auto formula = need(Tg43::create(source, DoseFormalism::line2d));
+    const RateTable table(formula);
+    Curve curve{.label = source.name};
     for (double r = RateTable::kNear_mm; r < 120.0; r *= 1.013) {
       double worst = 0.0;
       for (double cosine = -1.0; cosine <= 1.0; cosine += 0.0037)
-        worst = worse(worst, 100.0 * std::abs(table.rate(r, cosine) / formula->rate(r, cosine) - 1.0));
+        worst = worse(worst, 100.0 * std::abs(table.rate(r, cosine) / formula.rate(r, cosine) - 1.0));
       finding.value = worse(finding.value, worst);
       curve.add(r, worst);
     }
@@ -154,30 +148,26 @@ Result<Finding> table_of_the_formula(Context&) {
   return finding;
 }
 
-Result<Finding> points_of_the_calculator(Context& context) {
-  const auto path = context.data(kPlan);
-  if (!path) return Finding::skip(context.no_data(kPlan));
-  const auto plan = read_synthetic_plan(*path);
-  if (!plan) return plan.error();
-  const auto tg43 = Tg43::create(plan->source, DoseFormalism::line2d);
-  if (!tg43) return tg43.error();
-  Finding finding;
-  finding.value = 0.0;
+Finding points_of_the_calculator(Context& context) {
+  const auto path = need_file(context, kPlan);
+  const auto plan = read_synthetic_plan(path);
+  const auto tg43 = need(Tg43::create(plan.source, DoseFormalism::line2d));
+  Finding finding{.value = 0.0};
   std::vector<std::pair<double, double>> errors;
-  for (const nlohmann::json& point : plan->file.at("points")) {
+  for (const nlohmann::json& point : plan.file.at("points")) {
     const Vec3 x = vector_of(point.at("xyz_mm"));
     double nearest = 1e300;
-    for (const PlacedSource& seed : plan->seeds) nearest = std::min(nearest, (x - seed.at_mm).norm());
+    for (const PlacedSource& seed : plan.seeds) nearest = std::min(nearest, (x - seed.at_mm).norm());
     if (nearest < 2.5) continue;
     double rate = 0.0;
-    sum_rates(*tg43, plan->seeds, {&x, 1}, {&rate, 1});
+    sum_rates(tg43, plan.seeds, {&x, 1}, {&rate, 1});
     const double dose = rate * permanent_Gy_per_rate(kI125_days);
     const double error = 100.0 * std::abs(dose / point.at("2d").get<double>() - 1.0);
     finding.value = worse(finding.value, error);
     errors.emplace_back(nearest, error);
   }
   std::sort(errors.begin(), errors.end());
-  Curve curve{.label = "points", .x = {}, .y = {}, .kind = Curve::Kind::points};
+  Curve curve{.label = "points", .kind = Curve::Kind::points};
   for (const auto& [distance, error] : errors) curve.add(distance, error);
   finding.plot = {.x_label = "distance from the nearest seed [mm]", .y_label = "error [%]", .curves = {curve}};
   finding.note =
@@ -185,23 +175,18 @@ Result<Finding> points_of_the_calculator(Context& context) {
   return finding;
 }
 
-Result<Finding> dose_volume_of_the_calculator(Context& context) {
-  const auto path = context.data(kPlan);
-  if (!path) return Finding::skip(context.no_data(kPlan));
-  const auto plan = read_synthetic_plan(*path);
-  if (!plan) return plan.error();
-  auto tg43 = Tg43::create(plan->source, DoseFormalism::line2d);
-  if (!tg43) return tg43.error();
-  const auto samples = sample_structure(ellipsoid(vector_of(plan->file.at("ellipsoid_semi_axes_mm"))), 0.5);
-  if (!samples) return samples.error();
-  std::vector<double> dose(samples->points.size());
-  sum_rates(RateTable(*std::move(tg43)), plan->seeds, samples->points, dose);
+Finding dose_volume_of_the_calculator(Context& context) {
+  const auto path = need_file(context, kPlan);
+  const auto plan = read_synthetic_plan(path);
+  auto tg43 = need(Tg43::create(plan.source, DoseFormalism::line2d));
+  const auto samples = need(sample_structure(ellipsoid(vector_of(plan.file.at("ellipsoid_semi_axes_mm"))), 0.5));
+  std::vector<double> dose(samples.points.size());
+  sum_rates(RateTable(std::move(tg43)), plan.seeds, samples.points, dose);
   for (double& d : dose) d *= permanent_Gy_per_rate(kI125_days);
-  const DoseVolume dvh(dose, samples->volume_mm3);
-  const nlohmann::json& expected = plan->file.at("structures").at("prostate_0.5mm").at("2d");
-  const double prescription = plan->file.at("prescription_Gy");
-  Finding finding;
-  finding.value = 0.0;
+  const DoseVolume dvh(dose, samples.volume_mm3);
+  const nlohmann::json& expected = plan.file.at("structures").at("prostate_0.5mm").at("2d");
+  const double prescription = plan.file.at("prescription_Gy");
+  Finding finding{.value = 0.0};
   const auto compare = [&](double found, double wanted, bool relative) {
     finding.value = worse(finding.value, relative ? 100.0 * std::abs(found / wanted - 1.0) : std::abs(found - wanted));
   };
@@ -211,9 +196,9 @@ Result<Finding> dose_volume_of_the_calculator(Context& context) {
   compare(dvh.percent_above(prescription), expected.at("V100_pct"), false);
   compare(dvh.percent_above(1.5 * prescription), expected.at("V150_pct"), false);
   compare(dvh.percent_above(2.0 * prescription), expected.at("V200_pct"), false);
-  Curve ours{.label = "stylet", .x = {}, .y = {}};
+  Curve ours{.label = "stylet"};
   for (double gray = 40.0; gray <= 400.0; gray += 2.0) ours.add(gray, dvh.percent_above(gray));
-  Curve theirs{.label = "calculator", .x = {}, .y = {}, .kind = Curve::Kind::points};
+  Curve theirs{.label = "calculator", .kind = Curve::Kind::points};
   theirs.add(expected.at("D90_Gy"), 90.0);
   theirs.add(prescription, expected.at("V100_pct"));
   theirs.add(expected.at("D50_Gy"), 50.0);
@@ -265,35 +250,29 @@ class Misplaced {
   double planned_ = 0.0;
 };
 
-Result<Finding> errors_of_placement(Context& context) {
-  const auto path = context.data(kPlan);
-  if (!path) return Finding::skip(context.no_data(kPlan));
-  const auto margin_path = context.data(kMarginPlan);
-  if (!margin_path) return Finding::skip(context.no_data(kMarginPlan));
-  const auto plan = read_synthetic_plan(*path);
-  if (!plan) return plan.error();
-  auto tg43 = Tg43::create(plan->source, DoseFormalism::line1d);
-  if (!tg43) return tg43.error();
-  const RateTable table(*std::move(tg43));
-  const auto samples = sample_structure(ellipsoid(vector_of(plan->file.at("ellipsoid_semi_axes_mm"))), 1.5);
-  if (!samples) return samples.error();
-  const nlohmann::json margin = nlohmann::json::parse(std::ifstream(*margin_path));
+Finding errors_of_placement(Context& context) {
+  const auto path = need_file(context, kPlan);
+  const auto margin_path = need_file(context, kMarginPlan);
+  const auto plan = read_synthetic_plan(path);
+  auto tg43 = need(Tg43::create(plan.source, DoseFormalism::line1d));
+  const RateTable table(std::move(tg43));
+  const auto samples = need(sample_structure(ellipsoid(vector_of(plan.file.at("ellipsoid_semi_axes_mm"))), 1.5));
+  const nlohmann::json margin = nlohmann::json::parse(std::ifstream(margin_path));
   std::vector<PlacedSource> margin_seeds;
   for (const nlohmann::json& at : margin.at("seeds"))
     margin_seeds.push_back({.at_mm = vector_of(at), .axis = Vec3::UnitZ(), .weight = margin.at("S_K")});
-  Misplaced within(table, *samples, plan->seeds);
-  Misplaced beyond(table, *samples, margin_seeds);
+  Misplaced within(table, samples, plan.seeds);
+  Misplaced beyond(table, samples, margin_seeds);
   constexpr int kDraws = 200;
-  Finding finding;
-  finding.value = 0.0;
-  Curve ours_within{.label = "seeds within the gland", .x = {}, .y = {}};
-  Curve ours_beyond{.label = "seeds to 3 mm around it", .x = {}, .y = {}};
-  Curve theirs{.label = "calculator", .x = {}, .y = {}, .kind = Curve::Kind::points};
+  Finding finding{.value = 0.0};
+  Curve ours_within{.label = "seeds within the gland"};
+  Curve ours_beyond{.label = "seeds to 3 mm around it"};
+  Curve theirs{.label = "calculator", .kind = Curve::Kind::points};
   for (int sigma = 1; sigma <= 6; ++sigma) {
     const double a = within.random(Vec3::Constant(sigma), kDraws);
     const double b = beyond.random(Vec3::Constant(sigma), kDraws);
     const double wanted_a =
-        plan->file.at("placement_error_to_D90").at(fmt::format("iso_{}mm", sigma)).at("D90_ratio_mean");
+        plan.file.at("placement_error_to_D90").at(fmt::format("iso_{}mm", sigma)).at("D90_ratio_mean");
     const double wanted_b = margin.at("curve").at(fmt::format("{}mm", sigma)).at(0);
     finding.value = std::max({finding.value, std::abs(a - wanted_a), std::abs(b - wanted_b)});
     ours_within.add(sigma, a);
@@ -312,32 +291,25 @@ Result<Finding> errors_of_placement(Context& context) {
 }
 
 /// Compares the dose of a plan for a phantom with that of the planning system.
-Result<Finding> dose_of_a_planning_system(Context& context) {
-  const auto plan_path = context.data(kPhantomPlan);
-  if (!plan_path) return Finding::skip(context.no_data(kPhantomPlan));
-  const auto dose_path = context.data(kPhantomDose);
-  if (!dose_path) return Finding::skip(context.no_data(kPhantomDose));
-  const auto plan = read_plan(*plan_path);
-  if (!plan) return plan.error();
-  const auto grid = read_rtdose(*dose_path);
-  if (!grid) return grid.error();
-  const auto source = find_source("ir192_gammamed_plus");
-  if (!source) return source.error();
+Finding dose_of_a_planning_system(Context& context) {
+  const auto plan_path = need_file(context, kPhantomPlan);
+  const auto dose_path = need_file(context, kPhantomDose);
+  const auto plan = need(read_plan(plan_path));
+  const auto grid = need(read_rtdose(dose_path));
+  const auto source = need(find_source("ir192_gammamed_plus"));
   // The grid of the evaluation itself is not used here.
   const DoseOptions options{.grid_step_mm = 5.0, .goals = {}, .points = {}};
-  auto evaluation = evaluate_dose(*plan, *source, {}, options);
-  if (!evaluation) return evaluation.error();
-  if (auto done = compare_with_grid(*evaluation, *grid, {}, options, Vec3(0, 0, -1)); !done) return done.error();
-  const DoseComparison& found = *evaluation->comparison;
-  Finding finding;
-  finding.value = 0.0;
+  auto evaluation = need(evaluate_dose(plan, source, {}, options));
+  need(compare_with_grid(evaluation, grid, {}, options, Vec3(0, 0, -1)));
+  const DoseComparison& found = *evaluation.comparison;
+  Finding finding{.value = 0.0};
   for (const double ratio : {found.p1, found.median_ratio, found.p99})
     finding.value = worse(finding.value, 100.0 * std::abs(ratio - 1.0));
   finding.note = fmt::format(
       "An HDR plan with {} dwell positions, compared at {} points of the dose grid further than 4 mm from all of them: "
       "the ratio of the doses has the median {:.4f} and lies between {:.4f} and {:.4f} for 98 % of the points. The "
       "frames of the file lie 1 mm lower than its header says. The value is the largest of the three errors.",
-      plan->sources.size(), found.points, found.median_ratio, found.p1, found.p99);
+      plan.sources.size(), found.points, found.median_ratio, found.p1, found.p99);
   return finding;
 }
 

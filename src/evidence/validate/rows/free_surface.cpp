@@ -23,49 +23,45 @@ struct Pressed {
   double punch = 0.0;
 };
 
-Result<Pressed> press_skin(const std::string& method, int cells, const std::array<double, 3>& entry) {
-  Block block;
-  block.gland_radius_mm = 0.0;
+Pressed press_skin(const std::string& method, int cells, const std::array<double, 3>& entry) {
+  Block block = Block::of_one_tissue();
   block.cells = {cells, cells, cells};
   block.entry_mm = entry;
   block.depth_mm = 5.0;
   block.scenario.coupling.method = choice<CouplingSettings::Method>(method).value();
-  const auto model = block.compile();
-  if (!model) return model.error();
-  const Material& skin = (*model)->tissue().material(0);
+  const auto model = need(block.compile());
+  const Material& skin = model->tissue().material(0);
   constexpr double depth_mm = 0.1;
-  Drive drive(*model, 0.0);
+  Drive drive(model, 0.0);
   drive.go(depth_mm, 1.0);
   if (drive.event(EventKind::puncture) != nullptr)
-    return failure("flat_punch", "the skin broke at a depth below 0.1 mm", "Press less deep");
+    throw Failed{failure("flat_punch", "the skin broke at a depth below 0.1 mm", "Press less deep")};
   return Pressed{drive.last().record.force_axial_N / depth_mm,
-                 2.0 * (*model)->coupling().needle_radius_mm * skin.young_MPa / (1.0 - skin.poisson * skin.poisson)};
+                 2.0 * model->coupling().needle_radius_mm * skin.young_MPa / (1.0 - skin.poisson * skin.poisson)};
 }
 
 const std::string kJudged = "near-field";
 constexpr std::array<std::array<double, 3>, 3> kEntries{{{3.0, 2.0, 0.0}, {-4.1, 7.3, 0.0}, {9.7, -1.2, 0.0}}};
 
-Result<Finding> flat_punch(Context&) {
-  Finding finding;
-  finding.value = 0.0;
+Finding flat_punch(Context&) {
+  Finding finding{.value = 0.0};
   finding.plot = {.x_label = "element size [mm]", .y_label = "stiffness [N/mm]", .log_y = true};
   double stiffness = 0.0;
-  Curve punch{.label = "flat punch", .x = {}, .y = {}, .kind = Curve::Kind::reference};
+  Curve punch{.label = "flat punch", .kind = Curve::Kind::reference};
   for (const std::string& method : {kJudged, std::string("embedded")}) {
-    Curve curve{.label = method, .x = {}, .y = {}};
+    Curve curve{.label = method};
     double low = std::numeric_limits<double>::infinity();
     double high = 0.0;
     for (const int cells : {12, 8, 6, 4}) {
       double sum = 0.0;
       for (const std::array<double, 3>& entry : kEntries) {
         const auto pressed = press_skin(method, cells, entry);
-        if (!pressed) return pressed.error();
-        low = std::min(low, pressed->ours);
-        high = std::max(high, pressed->ours);
-        sum += pressed->ours;
-        stiffness = pressed->punch;
+        low = std::min(low, pressed.ours);
+        high = std::max(high, pressed.ours);
+        sum += pressed.ours;
+        stiffness = pressed.punch;
         if (method == kJudged)
-          finding.value = worse(finding.value, 100.0 * std::abs(pressed->ours / pressed->punch - 1.0));
+          finding.value = worse(finding.value, 100.0 * std::abs(pressed.ours / pressed.punch - 1.0));
       }
       curve.add(100.0 / cells, sum / static_cast<double>(kEntries.size()));
     }
@@ -116,20 +112,19 @@ struct RodEnd {
 constexpr std::array<RodEnd, 7> kRodEnds{
     {{1.0, 2.922}, {1.5, 3.055}, {2.0, 3.150}, {3.0, 3.271}, {5.0, 3.395}, {7.0, 3.457}, {10.0, 3.508}}};
 
-Result<Finding> mindlin(Context&) {
+Finding mindlin(Context&) {
   const NeedleKernel needle;
   const NeedleKernel point{.radius_mm = 0.05};  // small enough to be a point force for its neighbours
   Finding finding;
   double tip_off = 0.0;
   double field_off = 0.0;
   finding.plot = {.x_label = "depth below the face [mm]", .y_label = "compliance [mm/N]"};
-  Curve reference{.label = "end of a rod by finite elements", .x = {}, .y = {}, .kind = Curve::Kind::reference};
+  Curve reference{.label = "end of a rod by finite elements", .kind = Curve::Kind::reference};
   for (const int cells : {7, 14}) {
-    auto built = MediumBlock::build({.cells = cells, .skin = true, .element = Element::nodal_pressure});
-    if (!built) return built.error();
-    HalfSpace half{std::move(*built)};
+    auto built = need(MediumBlock::build({.cells = cells, .skin = true, .element = Element::nodal_pressure}));
+    HalfSpace half{std::move(built)};
     const Medium& medium = half.block.medium;
-    Curve ours{.label = fmt::format("ours, elements of {:.0f} mm", 100.0 / cells), .x = {}, .y = {}};
+    Curve ours{.label = fmt::format("ours, elements of {:.0f} mm", 100.0 / cells)};
     const double young_MPa = half.block.tissue->material(0).young_MPa;
     for (const auto& [depth, stiffness] : kRodEnds) {
       const Vec3 source = Vec3(2.3, -1.7, depth) - half.up;

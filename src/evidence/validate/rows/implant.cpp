@@ -42,19 +42,16 @@ NeedleLoad loaded_needle(const Vec3& centre, double x, double y, std::size_t num
 /// Nine needles on a grid of 10 mm around the gland's centre, one after the other. Simulated once.
 class SmallImplant {
  public:
-  Result<std::shared_ptr<const ImplantHistory>> get(Context& context) {
+  std::shared_ptr<const ImplantHistory> get(Context& context) {
     if (history_) return history_;
-    const auto mesh = context.demo_mesh();
-    if (!mesh) return mesh.error();
-    const Vec3 centre = centroid(*mesh, gland_of(*mesh));
+    const auto mesh = need(context.demo_mesh());
+    const Vec3 centre = centroid(mesh, gland_of(mesh));
     std::vector<NeedleLoad> loads;
     for (const double y : {-10.0, 0.0, 10.0}) {
       for (const double x : {-10.0, 0.0, 10.0}) loads.push_back(loaded_needle(centre, x, y, loads.size()));
     }
-    auto history =
-        simulate_implant(implant_scenario(), *mesh, loads, kSeedLength_mm, "the small implant", context.progress());
-    if (!history) return history.error();
-    history_ = std::make_shared<const ImplantHistory>(*std::move(history));
+    history_ = std::make_shared<const ImplantHistory>(need(
+        simulate_implant(implant_scenario(), mesh, loads, kSeedLength_mm, "the small implant", context.progress())));
     return history_;
   }
 
@@ -73,27 +70,25 @@ double mean_without(const ImplantHistory& history, std::initializer_list<SeedCau
   return sum / static_cast<double>(history.seeds.size());
 }
 
-Result<Finding> seed_error(Context& context, SmallImplant& implant) {
+Finding seed_error(Context& context, SmallImplant& implant) {
   const auto history = implant.get(context);
-  if (!history) return history.error();
-  const SeedErrors errors = seed_errors((*history)->seeds);
+  const SeedErrors errors = seed_errors(history->seeds);
   Finding finding;
   finding.value = errors.mean_mm;
   finding.note = fmt::format(
       "{} seeds of nine needles of the demo patient, default tissue: 95 % of the errors are below {:.1f} mm. Two null "
       "models: in a gland that does not move the mean error is {:.2f} mm, and with a needle that stays straight {:.2f} "
       "mm. Errors in patients include those of imaging and of the surgeon's aim, which are not simulated.",
-      errors.seeds, errors.p95_mm, mean_without(**history, {SeedCause::motion, SeedCause::relaxation}),
-      mean_without(**history, {SeedCause::bend}));
+      errors.seeds, errors.p95_mm, mean_without(*history, {SeedCause::motion, SeedCause::relaxation}),
+      mean_without(*history, {SeedCause::bend}));
   return finding;
 }
 
-Result<Finding> seed_axes(Context& context, SmallImplant& implant) {
+Finding seed_axes(Context& context, SmallImplant& implant) {
   const auto history = implant.get(context);
-  if (!history) return history.error();
   Vec3 squares = Vec3::Zero();
-  for (const SeedHistory& seed : (*history)->seeds) squares += seed.error_mm().cwiseAbs2();
-  const Vec3 rms = (squares / static_cast<double>((*history)->seeds.size())).cwiseSqrt();
+  for (const SeedHistory& seed : history->seeds) squares += seed.error_mm().cwiseAbs2();
+  const Vec3 rms = (squares / static_cast<double>(history->seeds.size())).cwiseSqrt();
   Finding finding;
   finding.value = rms.z() / std::max(rms.x(), rms.y());
   finding.note = fmt::format(
@@ -108,7 +103,7 @@ Result<Finding> seed_axes(Context& context, SmallImplant& implant) {
 /// Needles at places beside the gland's centre, one after the other in one tissue. All stay.
 class NeedlesInPlace {
  public:
-  static Result<NeedlesInPlace> make(const TetMesh& mesh, const std::vector<Vec3>& beside_centre) {
+  static NeedlesInPlace make(const TetMesh& mesh, const std::vector<Vec3>& beside_centre) {
     const Vec3 centre = centroid(mesh, gland_of(mesh));
     Scenario scenario = implant_scenario();
     for (const Vec3& beside : beside_centre) {
@@ -118,15 +113,14 @@ class NeedlesInPlace {
       plan.speed_mm_per_s = kImplantSpeed_mm_per_s;
       scenario.insertions.push_back(plan);
     }
-    auto model = Model::compile(scenario, mesh, "needles in place");
-    if (!model) return model.error();
-    return NeedlesInPlace(*std::move(model));
+    auto model = need(Model::compile(scenario, mesh, "needles in place"));
+    return NeedlesInPlace(std::move(model));
   }
 
   /// Puts the next needle in. @return the gland's motion with it in place, or an error where too many steps have no
   /// balance
-  Result<VolumeMotion> put_in_next(TargetMotion& gland) {
-    if (Result<> taken = simulation_->take_up(next_); !taken) return taken.error();
+  VolumeMotion put_in_next(TargetMotion& gland) {
+    need(simulation_->take_up(next_));
     const PlannedInsertion& insertion = model_->insertions()[static_cast<std::size_t>(next_)];
     ++next_;
     simulation_->place(insertion);
@@ -146,10 +140,10 @@ class NeedlesInPlace {
       if (t > insertion.motion.duration_s()) break;
     }
     if (without_balance > kMostWithoutBalance * steps) {
-      return failure("validate",
-                     fmt::format("{} of {} steps of needle {} have no balance, so the gland's motion is wrong",
-                                 without_balance, steps, next_),
-                     "Use a smaller time step");
+      throw Failed{failure("validate",
+                           fmt::format("{} of {} steps of needle {} have no balance, so the gland's motion is wrong",
+                                       without_balance, steps, next_),
+                           "Use a smaller time step")};
     }
     return gland.now(simulation_->insertion()).motion;
   }
@@ -165,25 +159,20 @@ class NeedlesInPlace {
   int next_ = 0;
 };
 
-Result<Finding> base_shift(Context& context) {
-  const auto mesh = context.demo_mesh();
-  if (!mesh) return mesh.error();
+Finding base_shift(Context& context) {
+  const auto mesh = need(context.demo_mesh());
   std::vector<Vec3> places;
   for (const double y : {-10.0, 0.0, 10.0}) {
     for (const double x : {-15.0, -5.0, 5.0, 15.0}) places.emplace_back(x, y, 0.0);
   }
-  auto needles = NeedlesInPlace::make(*mesh, places);
-  if (!needles) return needles.error();
-  auto gland = TargetMotion::of(needles->model(), context.progress());
-  if (!gland) return gland.error();
+  auto needles = NeedlesInPlace::make(mesh, places);
+  auto gland = need(TargetMotion::of(needles.model(), context.progress()));
   Finding finding;
   finding.plot = {.x_label = "needles in place", .y_label = "base to superior [mm]", .curves = {}};
   Curve curve{.label = "demo patient", .x = {0.0}, .y = {0.0}};
   for (std::size_t k = 0; k < places.size(); ++k) {
-    const auto motion = needles->put_in_next(*gland);
-    if (!motion) return motion.error();
-    curve.x.push_back(static_cast<double>(k + 1));
-    curve.y.push_back(motion->third_mm[VolumeMotion::superior].z());
+    const auto motion = needles.put_in_next(gland);
+    curve.add(static_cast<double>(k + 1), motion.third_mm[VolumeMotion::superior].z());
   }
   finding.value = curve.y.back();
   finding.note = fmt::format(
@@ -199,39 +188,33 @@ Result<Finding> base_shift(Context& context) {
 }
 
 /// How far a needle moves the gland, from the moment before it goes in.
-Result<double> motion_by_last(const TetMesh& mesh, const std::vector<Vec3>& places, const Progress& progress) {
+double motion_by_last(const TetMesh& mesh, const std::vector<Vec3>& places, const Progress& progress) {
   auto needles = NeedlesInPlace::make(mesh, places);
-  if (!needles) return needles.error();
-  auto gland = TargetMotion::of(needles->model(), progress);
-  if (!gland) return gland.error();
+  auto gland = need(TargetMotion::of(needles.model(), progress));
   Vec3 before = Vec3::Zero();
   Vec3 after = Vec3::Zero();
   for (std::size_t k = 0; k < places.size(); ++k) {
     before = after;
-    const auto motion = needles->put_in_next(*gland);
-    if (!motion) return motion.error();
-    after = motion->shift_mm;
+    const auto motion = needles.put_in_next(gland);
+    after = motion.shift_mm;
   }
   return (after - before).norm();
 }
 
-Result<Finding> stabilising(Context& context) {
-  const auto mesh = context.demo_mesh();
-  if (!mesh) return mesh.error();
+Finding stabilising(Context& context) {
+  const auto mesh = need(context.demo_mesh());
   const Vec3 left(12, 0, 0);
   const Vec3 needle(0, 5, 0);
-  const auto alone = motion_by_last(*mesh, {needle}, context.progress());
-  if (!alone) return alone.error();
-  const auto held = motion_by_last(*mesh, {left, -left, needle}, context.progress());
-  if (!held) return held.error();
+  const auto alone = motion_by_last(mesh, {needle}, context.progress());
+  const auto held = motion_by_last(mesh, {left, -left, needle}, context.progress());
   Finding finding;
-  finding.value = *held / *alone;
+  finding.value = held / alone;
   finding.note = fmt::format(
       "Motion of the gland from before a needle to its full depth: {:.2f} mm alone, {:.2f} mm between two parallel "
       "needles that stay, 12 mm to each side. In a phantom, hooked needles reduced the motion by more than 40 % and "
       "needles at an angle by about 40 %; these needles are straight and parallel, and hold by friction alone. The "
       "null model, needles that do not feel each other, gives 1.",
-      *alone, *held);
+      alone, held);
   return finding;
 }
 

@@ -124,30 +124,26 @@ std::vector<PlacedSource> placed(const ImplantHistory& history, std::initializer
   return seeds;
 }
 
-Result<Finding> d90_of_an_implant(Context& context) {
-  const auto mesh = context.demo_mesh();
-  if (!mesh) return mesh.error();
-  const auto source = find_source("i125_6711");
-  if (!source) return source.error();
-  auto tg43 = Tg43::create(*source, DoseFormalism::line2d);
-  if (!tg43) return tg43.error();
-  const SampledGland gland(*mesh);
+Finding d90_of_an_implant(Context& context) {
+  const auto mesh = need(context.demo_mesh());
+  const auto source = need(find_source("i125_6711"));
+  auto tg43 = need(Tg43::create(source, DoseFormalism::line2d));
+  const SampledGland gland(mesh);
   const std::vector<NeedleLoad> loads = needles_through(gland.grid(kGrid_mm));
-  const auto history = simulate_implant(implant_scenario(), *mesh, loads, kSeedLength_mm,
-                                        "an implant of the whole gland", context.progress());
-  if (!history) return history.error();
+  const auto history = need(simulate_implant(implant_scenario(), mesh, loads, kSeedLength_mm,
+                                             "an implant of the whole gland", context.progress()));
 
-  D90OfPlaces d90(RateTable(*std::move(tg43)), gland.samples());
+  D90OfPlaces d90(RateTable(std::move(tg43)), gland.samples());
   std::vector<PlacedSource> plan;
   Vec3 squares = Vec3::Zero();
-  for (const SeedHistory& seed : history->seeds) {
+  for (const SeedHistory& seed : history.seeds) {
     plan.push_back({.at_mm = seed.planned_mm, .axis = Vec3::UnitZ(), .weight = 1.0});
     squares += seed.error_mm().cwiseAbs2();
   }
   const Vec3 rms = (squares / static_cast<double>(plan.size())).cwiseSqrt();
-  const double planned = d90.of(plan, source->half_life_days);
+  const double planned = d90.of(plan, source.half_life_days);
   const auto ratio = [&](const std::vector<PlacedSource>& seeds) {
-    return d90.of(seeds, source->half_life_days) / planned;
+    return d90.of(seeds, source.half_life_days) / planned;
   };
 
   std::mt19937 engine(7);
@@ -165,11 +161,11 @@ Result<Finding> d90_of_an_implant(Context& context) {
   };
 
   Finding finding;
-  finding.value = ratio(placed(*history, {}));
-  Curve random{.label = "random errors", .x = {}, .y = {}, .kind = Curve::Kind::reference};
+  finding.value = ratio(placed(history, {}));
+  Curve random{.label = "random errors", .kind = Curve::Kind::reference};
   random.add(0.0, 1.0);
   for (const double sigma : {1.0, 2.0, 3.0, 4.0, 5.0, 6.0}) random.add(sigma, at_random(Vec3::Constant(sigma)));
-  Curve simulated{.label = "simulated implant", .x = {}, .y = {}, .kind = Curve::Kind::points};
+  Curve simulated{.label = "simulated implant", .kind = Curve::Kind::points};
   simulated.add(rms.norm() / std::sqrt(3.0), finding.value);
   finding.plot = {.x_label = "root mean square error on each axis [mm]",
                   .y_label = "D90 over that of the plan",
@@ -186,7 +182,7 @@ Result<Finding> d90_of_an_implant(Context& context) {
       "straight {:.3f}. Without any error it is 1.",
       plan.size(), loads.size(), kGrid_mm, strength_U, kPrescribed_Gy, rms.x(), rms.y(), rms.z(),
       published::d90::kSigma_mm, kRandomImplants, at_random(rms), published::d90::kSigma_mm, random.y[4],
-      ratio(placed(*history, {SeedCause::motion, SeedCause::relaxation})), ratio(placed(*history, {SeedCause::bend})));
+      ratio(placed(history, {SeedCause::motion, SeedCause::relaxation})), ratio(placed(history, {SeedCause::bend})));
   finding.why_missed =
       "Seeds of this plan lie within the gland only, without a margin around it, so that D90 falls with any shift of "
       "the outer ones; clinical plans have a margin, and surgeons correct the plan during the implant.";

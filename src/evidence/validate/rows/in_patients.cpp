@@ -21,7 +21,7 @@ constexpr double kSlow_mm_per_s = 5.0;
 constexpr double kFast_mm_per_s = 150.0;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-using Measure = Result<Finding> (*)(Context&, Patients&, PatientCase);
+using Measure = Finding (*)(Context&, Patients&, PatientCase);
 
 /// The gland's shift when its surface breaks; empty if it does not break.
 std::optional<Vec3> shift_at_break(const RecordedRun& run) {
@@ -37,7 +37,7 @@ double norm_at_break(const RecordedRun& run) {
 const Event* skin_break(const RecordedRun& run) { return run.event(EventKind::puncture); }
 
 Plot force_plot(const RecordedRun& run) {
-  Curve in{.label = "on the way in", .x = {}, .y = {}};
+  Curve in{.label = "on the way in"};
   for (const Step& s : run.steps) {
     if (in.x.empty() || s.base_depth_mm > in.x.back()) in.add(s.base_depth_mm, s.force_axial_N);
   }
@@ -45,9 +45,8 @@ Plot force_plot(const RecordedRun& run) {
 }
 
 Plot path_plot(const RecordedRun& run) {
-  std::array<Curve, 3> axes{Curve{.label = "to the left", .x = {}, .y = {}},
-                            Curve{.label = "to posterior", .x = {}, .y = {}},
-                            Curve{.label = "to superior", .x = {}, .y = {}}};
+  std::array<Curve, 3> axes{Curve{.label = "to the left"}, Curve{.label = "to posterior"},
+                            Curve{.label = "to superior"}};
   for (const GlandStep& s : run.summary.gland_path) {
     if (!axes[0].x.empty() && s.base_depth_mm <= axes[0].x.back()) continue;
     for (int a = 0; a < 3; ++a) axes[static_cast<std::size_t>(a)].add(s.base_depth_mm, s.shift_mm[a]);
@@ -55,28 +54,25 @@ Plot path_plot(const RecordedRun& run) {
   return {.x_label = "base depth [mm]", .y_label = "shift of the gland [mm]", .curves = {axes[0], axes[1], axes[2]}};
 }
 
-Result<Finding> gland_shift(Context& context, Patients& patients, PatientCase patient) {
+Finding gland_shift(Context& context, Patients& patients, PatientCase patient) {
   const auto run = patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s});
-  if (!run) return run.error();
   const auto slow = patients.run(context, patient, {.speed_mm_per_s = kSlow_mm_per_s});
-  if (!slow) return slow.error();
   Finding finding;
-  finding.value = norm_at_break(**run);
+  finding.value = norm_at_break(*run);
   finding.note = fmt::format(
       "The value is the mean shift of the gland’s volume when its surface breaks, at {:g} mm/s; it is {:.2f} mm at "
       "{:g} mm/s. Published: {:g} mm (0.3 … 21.6) for a needle that is pushed (not verified), 5.2 mm for the targets "
       "of 90 guided cores. The null model, a rigid gland, gives 0 mm.",
-      kUsual_mm_per_s, norm_at_break(**slow), kSlow_mm_per_s, prostate::kPushedShift_mm);
-  finding.plot = path_plot(**run);
+      kUsual_mm_per_s, norm_at_break(*slow), kSlow_mm_per_s, prostate::kPushedShift_mm);
+  finding.plot = path_plot(*run);
   return finding;
 }
 
-Result<Finding> gland_turn(Context& context, Patients& patients, PatientCase patient) {
+Finding gland_turn(Context& context, Patients& patients, PatientCase patient) {
   const auto run = patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s});
-  if (!run) return run.error();
   Finding finding;
-  if (!(*run)->summary.gland) return finding;
-  const PlaneAngles turn = plane_angles((*run)->summary.gland->rotation_deg);
+  if (!run->summary.gland) return finding;
+  const PlaneAngles turn = plane_angles(run->summary.gland->rotation_deg);
   finding.value = std::abs(turn.coronal);
   finding.note = fmt::format(
       "The value is the turn in the coronal plane by a needle 15 mm to the left of the axis; the turn is {:.1f}° in "
@@ -86,56 +82,51 @@ Result<Finding> gland_turn(Context& context, Patients& patients, PatientCase pat
   return finding;
 }
 
-Result<Finding> peak_force(Context& context, Patients& patients, PatientCase patient) {
+Finding peak_force(Context& context, Patients& patients, PatientCase patient) {
   const auto run = patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s});
-  if (!run) return run.error();
   Finding finding;
-  finding.value = (*run)->summary.peak_axial_N;
+  finding.value = run->summary.peak_axial_N;
   finding.note =
       "Published for 18 gauge: about 8.9 N through the perineum and 6 N in the gland (Podder 2006, not verified). The "
       "default puncture force of the capsule was fitted to these values.";
-  finding.plot = force_plot(**run);
+  finding.plot = force_plot(*run);
   return finding;
 }
 
-Result<Finding> skin_force(Context& context, Patients& patients, PatientCase patient) {
+Finding skin_force(Context& context, Patients& patients, PatientCase patient) {
   const auto run = patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s});
-  if (!run) return run.error();
   Finding finding;
-  if (const Event* skin = skin_break(**run)) finding.value = skin->force_N;
+  if (const Event* skin = skin_break(*run)) finding.value = skin->force_N;
   finding.note =
       "The value is the force of the hand when the skin breaks. Published: 2.75 … 2.80 N in fresh cadaver, from which "
       "the default puncture force of the skin is taken.";
   return finding;
 }
 
-Result<Finding> skin_dent(Context& context, Patients& patients, PatientCase patient) {
+Finding skin_dent(Context& context, Patients& patients, PatientCase patient) {
   const auto run = patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s});
-  if (!run) return run.error();
   const auto slow = patients.run(context, patient, {.speed_mm_per_s = kSlow_mm_per_s});
-  if (!slow) return slow.error();
   const auto dent = [](const RecordedRun& r) {
     const Event* contact = r.event(EventKind::skin_contact);
     const Event* skin = skin_break(r);
     return contact != nullptr && skin != nullptr ? skin->depth_mm - contact->depth_mm : kNone;
   };
   Finding finding;
-  finding.value = std::max(dent(**run), dent(**slow));
+  finding.value = std::max(dent(*run), dent(*slow));
   finding.note = fmt::format(
       "The base moves by {:.1f} mm at {:g} mm/s, and by {:.1f} mm at {:g} mm/s, from the contact with the skin to its "
       "puncture. No measurement at the perineum is known; up to 12 mm is considered plausible.",
-      dent(**run), kUsual_mm_per_s, dent(**slow), kSlow_mm_per_s);
+      dent(*run), kUsual_mm_per_s, dent(*slow), kSlow_mm_per_s);
   return finding;
 }
 
-Result<Finding> force_slope(Context& context, Patients& patients, PatientCase patient) {
+Finding force_slope(Context& context, Patients& patients, PatientCase patient) {
   const auto run = patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s});
-  if (!run) return run.error();
   Finding finding;
-  const Event* skin = skin_break(**run);
+  const Event* skin = skin_break(*run);
   if (skin == nullptr) return finding;
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, deepest = skin->depth_mm;
-  for (const Step& s : (*run)->steps) {
+  for (const Step& s : run->steps) {
     if (s.base_depth_mm <= deepest) continue;
     deepest = s.base_depth_mm;
     n += 1;
@@ -148,15 +139,14 @@ Result<Finding> force_slope(Context& context, Patients& patients, PatientCase pa
   finding.note =
       "The value is the slope of a straight line that is fitted to the force over depth, from the puncture of the skin "
       "to the deepest point. Published: 35 … 59 N/m in fresh cadaver.";
-  finding.plot = force_plot(**run);
+  finding.plot = force_plot(*run);
   return finding;
 }
 
-Result<Finding> gland_seat(Context& context, Patients& patients, PatientCase patient) {
+Finding gland_seat(Context& context, Patients& patients, PatientCase patient) {
   const auto run = patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s});
-  if (!run) return run.error();
-  const double at_once = seat_N_per_mm(*(*run)->model);
-  const double creep = creep_of((*run)->model->scenario());
+  const double at_once = seat_N_per_mm(*run->model);
+  const double creep = creep_of(run->model->scenario());
   Finding finding;
   finding.value = at_once / creep;
   finding.note = fmt::format(
@@ -167,17 +157,15 @@ Result<Finding> gland_seat(Context& context, Patients& patients, PatientCase pat
   return finding;
 }
 
-Result<Finding> speed_ratio(Context& context, Patients& patients, PatientCase patient) {
+Finding speed_ratio(Context& context, Patients& patients, PatientCase patient) {
   Finding finding;
-  Curve creeping{.label = "default tissue", .x = {}, .y = {}};
-  Curve elastic{.label = "null model: without creep", .x = {}, .y = {}, .kind = Curve::Kind::reference};
+  Curve creeping{.label = "default tissue"};
+  Curve elastic{.label = "null model: without creep", .kind = Curve::Kind::reference};
   for (const double speed : {kSlow_mm_per_s, kUsual_mm_per_s, kFast_mm_per_s}) {
     const auto run = patients.run(context, patient, {.speed_mm_per_s = speed});
-    if (!run) return run.error();
-    creeping.add(speed, norm_at_break(**run));
+    creeping.add(speed, norm_at_break(*run));
     const auto null = patients.run(context, patient, {.speed_mm_per_s = speed, .creeps = false});
-    if (!null) return null.error();
-    elastic.add(speed, norm_at_break(**null));
+    elastic.add(speed, norm_at_break(*null));
   }
   const double ratio = creeping.y.back() / creeping.y.front();
   const double null = elastic.y.back() / elastic.y.front();
@@ -199,17 +187,16 @@ Result<Finding> speed_ratio(Context& context, Patients& patients, PatientCase pa
   return finding;
 }
 
-Result<Finding> axis_ratio(Context& context, Patients& patients, PatientCase patient) {
+Finding axis_ratio(Context& context, Patients& patients, PatientCase patient) {
   const std::array<const char*, 6> holes{"c3.5", "e3.5", "c4.5", "e4.5", "D3", "d5"};
   Vec3 mean = Vec3::Zero();
-  std::array<Curve, 3> curves{Curve{.label = "left or right", .x = {}, .y = {}, .kind = Curve::Kind::points},
-                              Curve{.label = "anterior or posterior", .x = {}, .y = {}, .kind = Curve::Kind::points},
-                              Curve{.label = "along the needle", .x = {}, .y = {}, .kind = Curve::Kind::points}};
+  std::array<Curve, 3> curves{Curve{.label = "left or right", .kind = Curve::Kind::points},
+                              Curve{.label = "anterior or posterior", .kind = Curve::Kind::points},
+                              Curve{.label = "along the needle", .kind = Curve::Kind::points}};
   for (std::size_t k = 0; k < holes.size(); ++k) {
     const auto run = patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s, .hole = holes[k]});
-    if (!run) return run.error();
-    if (!(*run)->summary.gland) return Finding{.note = "The patient has no gland."};
-    const Vec3 shift = (*run)->summary.gland->shift_max_mm.cwiseAbs();
+    if (!run->summary.gland) return Finding{.note = "The patient has no gland."};
+    const Vec3 shift = run->summary.gland->shift_max_mm.cwiseAbs();
     mean += shift / static_cast<double>(holes.size());
     for (int a = 0; a < 3; ++a) curves[static_cast<std::size_t>(a)].add(static_cast<double>(k + 1), shift[a]);
   }
@@ -236,16 +223,13 @@ Result<Finding> axis_ratio(Context& context, Patients& patients, PatientCase pat
   return finding;
 }
 
-Result<Finding> bevel_deflection(Context& context, Patients& patients, PatientCase patient) {
+Finding bevel_deflection(Context& context, Patients& patients, PatientCase patient) {
   constexpr double depth_mm = 95.0;
-  const auto bevelled =
-      patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s, .depth_mm = depth_mm, .bevel_deg = 20.0});
-  if (!bevelled) return bevelled.error();
-  const auto null =
-      patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s, .depth_mm = depth_mm, .bevel_deg = 0.0});
-  if (!null) return null.error();
-  const double deflection = (*bevelled)->summary.tip_deflection_mm;
-  const double symmetric = (*null)->summary.tip_deflection_mm;
+  const auto deflection_with = [&](double bevel_deg) {
+    const PatientRun how{.speed_mm_per_s = kUsual_mm_per_s, .depth_mm = depth_mm, .bevel_deg = bevel_deg};
+    return patients.run(context, patient, how)->summary.tip_deflection_mm;
+  };
+  const double deflection = deflection_with(20.0), symmetric = deflection_with(0.0);
   Finding finding;
   finding.value = deflection > symmetric ? deflection : kNone;
   finding.note = fmt::format(
@@ -297,8 +281,8 @@ std::vector<RowSpec> in_patients_rows() {
   std::vector<RowSpec> rows;
   for (const PatientCase patient : {PatientCase::demo, PatientCase::mask}) {
     for (const Claim& claim : kClaims) {
-      const auto measure = [patients, patient, &claim](Context& context) -> Result<Finding> {
-        if (!Patients::is_there(context, patient)) return Finding::skip(context.no_data(Patients::kMask));
+      const auto measure = [patients, patient, &claim](Context& context) -> Finding {
+        if (!Patients::is_there(context, patient)) throw Skipped{context.no_data(Patients::kMask)};
         return claim.measure(context, *patients, patient);
       };
       const bool demo = patient == PatientCase::demo;

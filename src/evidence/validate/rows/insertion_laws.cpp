@@ -13,58 +13,35 @@ namespace stylet::validate {
 
 namespace {
 
-/// A block of one tissue, whose forces have closed forms.
-Block one_tissue() {
-  Block block;
-  block.gland_radius_mm = 0.0;
-  return block;
-}
-
-Curve force_curve(const Drive& drive, const std::string& label) {
-  return {.label = label,
-          .x = column(drive.steps(), &Step::base_depth_mm),
-          .y = column(drive.steps(), &Step::force_axial_N)};
-}
-
-/// Force against time, for motions in and out.
-Curve force_over_time(const Drive& drive, const std::string& label) {
-  return {.label = label, .x = column(drive.steps(), &Step::time_s), .y = column(drive.steps(), &Step::force_axial_N)};
-}
-
 double percent_off(double value, double expected) { return 100.0 * std::abs(value / expected - 1.0); }
 
-Result<Finding> steady_cutting(Context&) {
-  const auto model = one_tissue().compile();
-  if (!model) return model.error();
-  const RegionLaws& laws = (*model)->laws().front();
+Finding steady_cutting(Context&) {
+  const auto model = need(Block::of_one_tissue().compile());
+  const RegionLaws& laws = model->laws().front();
   constexpr double speed = 10.0;
   const double along = laws.friction.coulomb_N_per_mm + laws.friction.viscous_Ns_per_mm2 * speed;
-  const double tip = laws.cutting_N + (*model)->coupling().tip_viscosity_Ns_per_mm * speed;
-  Finding finding;
-  finding.value = 0.0;
-  Curve law{.label = "cutting + friction", .x = {}, .y = {}, .kind = Curve::Kind::reference};
-  Drive drive(*model);
+  const double tip = laws.cutting_N + model->coupling().tip_viscosity_Ns_per_mm * speed;
+  Finding finding{.value = 0.0};
+  Curve law{.label = "cutting + friction", .kind = Curve::Kind::reference};
+  Drive drive(model);
   for (double depth = 2.0; depth <= 50.0; depth += 2.0) {
     drive.go(depth, speed);
     if (drive.simulation().last_step().tip_state != TipState::cutting || depth < 20.0) continue;
     const double expected = tip + along * drive.simulation().last_step().inserted_mm;
     finding.value = worse(finding.value, percent_off(drive.last().record.force_axial_N, expected));
-    law.x.push_back(depth);
-    law.y.push_back(expected);
+    law.add(depth, expected);
   }
   finding.note = "One tissue, constant speed, from 20 mm depth on. The formula uses the simulated inserted length.";
   finding.why_missed = "The force is not quite constant where contacts are laid.";
-  finding.plot = {
-      .x_label = "base depth [mm]", .y_label = "axial force [N]", .curves = {force_curve(drive, "ours"), law}};
+  finding.plot = {.x_label = "base depth [mm]", .y_label = "axial force [N]", .curves = {curve_of(drive, "ours"), law}};
   return finding;
 }
 
-Result<Finding> reversal(Context&) {
-  const auto model = one_tissue().compile();
-  if (!model) return model.error();
-  const FrictionLaw& friction = (*model)->laws().front().friction;
+Finding reversal(Context&) {
+  const auto model = need(Block::of_one_tissue().compile());
+  const FrictionLaw& friction = model->laws().front().friction;
   constexpr double speed = 20.0;
-  Drive drive(*model);
+  Drive drive(model);
   drive.go(50.0, speed);
   const double pushing = drive.last().record.force_axial_N;
   drive.go(49.9, speed);
@@ -79,16 +56,16 @@ Result<Finding> reversal(Context&) {
       "The needle is pushed in with {:.2f} N. After 0.1 mm of retraction {} of {} contacts stick. After 10 mm all "
       "slip; the hand pulls with {:.3f} N, and the formula gives {:.3f} N.",
       pushing, sticking, contacts, -drive.last().record.force_axial_N, -expected);
-  finding.plot = {.x_label = "time [s]", .y_label = "axial force [N]", .curves = {force_over_time(drive, "ours")}};
+  finding.plot = {
+      .x_label = "time [s]", .y_label = "axial force [N]", .curves = {curve_of(drive, "ours", &Step::time_s)}};
   return finding;
 }
 
-Result<Finding> second_pass(Context&) {
-  const auto model = one_tissue().compile();
-  if (!model) return model.error();
-  const FrictionLaw& friction = (*model)->laws().front().friction;
+Finding second_pass(Context&) {
+  const auto model = need(Block::of_one_tissue().compile());
+  const FrictionLaw& friction = model->laws().front().friction;
   constexpr double speed = 10.0;
-  Drive drive(*model);
+  Drive drive(model);
   drive.go(40.0, speed);
   drive.go(20.0, speed);
   const double deepest = drive.insertion().track().end_xi;
@@ -104,23 +81,23 @@ Result<Finding> second_pass(Context&) {
       "{:g} mm of new track are cut.",
       drive.last().record.force_axial_N, expected, cut);
   drive.go(45.0, speed);
-  finding.plot = {.x_label = "time [s]", .y_label = "axial force [N]", .curves = {force_over_time(drive, "ours")}};
+  finding.plot = {
+      .x_label = "time [s]", .y_label = "axial force [N]", .curves = {curve_of(drive, "ours", &Step::time_s)}};
   return finding;
 }
 
-Result<Finding> withdrawal(Context&) {
+Finding withdrawal(Context&) {
   Block block;
   block.scenario.tissue_model.creep = 1.0;  // no creep, whose displacement would last for seconds
-  const auto model = block.compile({{-9, 7, 0}});
-  if (!model) return model.error();
-  Drive used(*model);
+  const auto model = need(block.compile({{-9, 7, 0}}));
+  Drive used(model);
   used.go(50.0);
   used.go(-1.0);
   const double left = used.insertion().displacement().cwiseAbs().maxCoeff();
   used.aim(1);
   const std::size_t from = used.steps().size();
   used.go(50.0);
-  Drive fresh(*model, -1.0, 1);
+  Drive fresh(model, -1.0, 1);
   fresh.go(50.0);
   Finding finding;
   finding.value = left;
@@ -133,24 +110,22 @@ Result<Finding> withdrawal(Context&) {
       "has the same forces as in fresh tissue; the value is the largest difference relative to the peak force.",
       left);
   finding.plot = {
-      .x_label = "base depth [mm]", .y_label = "axial force [N]", .curves = {force_curve(fresh, "fresh tissue")}};
-  Curve second{.label = "second needle", .x = {}, .y = {}, .kind = Curve::Kind::reference};
+      .x_label = "base depth [mm]", .y_label = "axial force [N]", .curves = {curve_of(fresh, "fresh tissue")}};
+  Curve second{.label = "second needle", .kind = Curve::Kind::reference};
   for (std::size_t i = from; i < used.steps().size(); ++i) {
-    second.x.push_back(used.steps()[i].record.base_depth_mm);
-    second.y.push_back(used.steps()[i].record.force_axial_N);
+    second.add(used.steps()[i].record.base_depth_mm, used.steps()[i].record.force_axial_N);
   }
   finding.plot.curves.push_back(std::move(second));
   return finding;
 }
 
-Result<Finding> moved_scene(Context&) {
-  const auto run = [](const Eigen::Affine3d& placing) -> Result<std::vector<DriveStep>> {
+Finding moved_scene(Context&) {
+  const auto run = [](const Eigen::Affine3d& placing) {
     Block block;
     block.direction = {0.1, 0.05, 1.0};
     block.placing = placing;
-    const auto model = block.compile();
-    if (!model) return model.error();
-    Drive drive(*model);
+    const auto model = need(block.compile());
+    Drive drive(model);
     drive.go(40.0);
     drive.shift(placing.linear() * Vec3(0.5, 0.2, 0.0));
     drive.go(50.0);
@@ -158,26 +133,22 @@ Result<Finding> moved_scene(Context&) {
     return drive.steps();
   };
   const auto plain = run(Eigen::Affine3d::Identity());
-  if (!plain) return plain.error();
   double peak = 0.0;
-  for (const DriveStep& s : *plain) peak = std::max(peak, s.hand_force.norm());
+  for (const DriveStep& s : plain) peak = std::max(peak, s.hand_force.norm());
 
   Eigen::Affine3d turned = Eigen::Affine3d::Identity();
   turned.rotate(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized())).pretranslate(Vec3(30, -20, 55));
   Eigen::Affine3d mirrored = Eigen::Affine3d::Identity();
   mirrored.linear().diagonal() << -1.0, 1.0, 1.0;
-  Finding finding;
-  finding.value = 0.0;
+  Finding finding{.value = 0.0};
   finding.plot = {.x_label = "step", .y_label = "difference / peak force", .log_y = true};
   for (const auto& [label, placing] : {std::pair{"rotated and moved", turned}, {"mirrored", mirrored}}) {
     const auto other = run(placing);
-    if (!other) return other.error();
-    Curve curve{.label = label, .x = {}, .y = {}};
-    for (std::size_t i = 0; i < plain->size(); ++i) {
-      const double off = ((*other)[i].hand_force - placing.linear() * (*plain)[i].hand_force).norm() / peak;
+    Curve curve{.label = label};
+    for (std::size_t i = 0; i < plain.size(); ++i) {
+      const double off = (other[i].hand_force - placing.linear() * plain[i].hand_force).norm() / peak;
       finding.value = worse(finding.value, off);
-      curve.x.push_back(static_cast<double>(i));
-      curve.y.push_back(off);
+      curve.add(static_cast<double>(i), off);
     }
     finding.plot.curves.push_back(std::move(curve));
   }
@@ -185,13 +156,11 @@ Result<Finding> moved_scene(Context&) {
   return finding;
 }
 
-Result<Finding> contact_changes(Context&) {
-  Block block = one_tissue();
+Finding contact_changes(Context&) {
+  Block block = Block::of_one_tissue();
   block.scenario.tissue_model.creep = 1.0;  // no creep, because relaxing forces would look like jumps
   block.direction = {0.1, 0.05, 1.0};
-  const auto model = block.compile();
-  if (!model) return model.error();
-  Drive drive(*model);
+  Drive drive(need(block.compile()));
   drive.go(30.0);
   drive.shift({0.6, 0.3, 0.0});
   drive.wait(0.01);
@@ -203,7 +172,7 @@ Result<Finding> contact_changes(Context&) {
   const auto depth = [&](std::size_t i) { return steps[i].record.base_depth_mm; };
   double worst = 0.0;
   int changes = 0;
-  Curve jumps{.label = "changes", .x = {}, .y = {}, .kind = Curve::Kind::points};
+  Curve jumps{.label = "changes", .kind = Curve::Kind::points};
   for (std::size_t i = 3; i + 2 < steps.size(); ++i) {
     if (steps[i].shaft_contacts == steps[i - 1].shaft_contacts || depth(i) < 8.0) continue;
     if (std::abs(depth(i) - depth(i - 1)) < 1e-9) continue;
@@ -211,8 +180,7 @@ Result<Finding> contact_changes(Context&) {
     const double jump = std::abs(force(i) - force(i - 1) - around);
     worst = std::max(worst, jump);
     ++changes;
-    jumps.x.push_back(steps[i].record.time_s);
-    jumps.y.push_back(100.0 * jump / drive.peak_N());
+    jumps.add(steps[i].record.time_s, 100.0 * jump / drive.peak_N());
   }
   Finding finding;
   finding.value = 100.0 * worst / drive.peak_N();
@@ -225,16 +193,13 @@ Result<Finding> contact_changes(Context&) {
   return finding;
 }
 
-Result<Finding> energy(Context&) {
+Finding energy(Context&) {
   Block block;
   block.direction = {0.05, 0.1, 1.0};
-  const auto model = block.compile();
-  if (!model) return model.error();
-  Drive drive(*model, 0.0);
-  Finding finding;
-  finding.value = 0.0;
-  Curve work{.label = "work of the hand", .x = {}, .y = {}, .kind = Curve::Kind::reference};
-  Curve stored{.label = "stored energy", .x = {}, .y = {}};
+  Drive drive(need(block.compile()), 0.0);
+  Finding finding{.value = 0.0};
+  Curve work{.label = "work of the hand", .kind = Curve::Kind::reference};
+  Curve stored{.label = "stored energy"};
   double from = 0.0;
   // The first millimetre is checked finely: until the skin breaks nearly no energy is lost, and both must agree.
   for (const auto& [to, looks] : {std::pair{1.0, 20}, {20.0, 20}, {50.0, 20}, {30.0, 20}, {60.0, 20}, {20.0, 20}}) {
@@ -243,10 +208,8 @@ Result<Finding> energy(Context&) {
       const double now = drive.insertion().tissue_energy() + drive.insertion().needle().energy();
       if (drive.last().work_Nmm <= 0.0) continue;
       finding.value = worse(finding.value, now / drive.last().work_Nmm);
-      work.x.push_back(drive.last().record.time_s);
-      work.y.push_back(drive.last().work_Nmm);
-      stored.x.push_back(drive.last().record.time_s);
-      stored.y.push_back(now);
+      work.add(drive.last().record.time_s, drive.last().work_Nmm);
+      stored.add(drive.last().record.time_s, now);
     }
     from = to;
   }
@@ -258,22 +221,20 @@ Result<Finding> energy(Context&) {
   return finding;
 }
 
-Result<Finding> balance(Context& context, bool torque) {
-  const auto run = context.demo_run();
-  if (!run) return run.error();
+Finding balance(Context& context, bool torque) {
+  const auto run = need(context.demo_run());
   Finding finding;
-  finding.value = torque ? (*run)->summary.residual_torque_balance : (*run)->summary.residual_force_balance;
+  finding.value = torque ? run->summary.residual_torque_balance : run->summary.residual_force_balance;
   finding.note = fmt::format(
       "The demo insertion, {} steps. The value is the largest sum of the {} that supports and contacts exert on the "
       "tissue, relative to the peak force{}. It says nothing about the hand: its force and torque are computed as the "
       "sum over the contacts, so that hand and contacts balance by definition. The row closed_loops checks the work of "
       "the hand.",
-      (*run)->summary.steps, torque ? "moments about the entry point" : "forces", torque ? " × 100 mm" : "");
+      run->summary.steps, torque ? "moments about the entry point" : "forces", torque ? " × 100 mm" : "");
   if (!torque) {
-    Curve force{.label = "the demo", .x = {}, .y = {}};
-    for (const Step& s : (*run)->steps) {
-      force.x.push_back(s.time_s);
-      force.y.push_back(s.force_axial_N);
+    Curve force{.label = "the demo"};
+    for (const Step& s : run->steps) {
+      force.add(s.time_s, s.force_axial_N);
     }
     finding.plot = {.x_label = "time [s]", .y_label = "axial force [N]", .curves = {force}};
   }

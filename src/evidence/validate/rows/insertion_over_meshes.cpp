@@ -17,7 +17,7 @@ constexpr Index kCoarsest = 1500;
 
 /// The force of the hand, with a point every 20 ms.
 Curve curve_of(const DemoOnMesh& row) {
-  Curve curve{.label = fmt::format("{}, {} nodes", row.method, row.nodes), .x = {}, .y = {}};
+  Curve curve{.label = fmt::format("{}, {} nodes", row.method, row.nodes)};
   if (row.method != kDefault) curve.kind = Curve::Kind::reference;
   const auto every = static_cast<std::size_t>(std::max(1L, std::lround(20e-3 / row.curve.dt_s)));
   for (std::size_t k = every; k <= row.curve.force_N.size(); k += every)
@@ -25,14 +25,13 @@ Curve curve_of(const DemoOnMesh& row) {
   return curve;
 }
 
-Result<Finding> force(Context& context) {
-  const auto rows = context.demo_on_meshes();
-  if (!rows) return rows.error();
+Finding force(Context& context) {
+  const auto rows = need(context.demo_on_meshes());
   Finding finding;
   finding.plot = {.x_label = "time [s]", .y_label = "axial force [N]"};
   finding.value = 0.0;
   std::string others;
-  for (const DemoOnMesh& row : *rows) {
+  for (const DemoOnMesh& row : rows) {
     if (row.method == kDefault) {
       if (row.nodes >= kCoarsest) finding.value = worse(finding.value, row.rms_vs_finest_percent);
       finding.note += fmt::format("{} nodes: RMS difference {:.2f} %, skin breaks at {:.1f} mm, capsule at {:.1f} mm. ",
@@ -55,18 +54,17 @@ Result<Finding> force(Context& context) {
   return finding;
 }
 
-Result<Finding> shift(Context& context) {
-  const auto rows = context.demo_on_meshes();
-  if (!rows) return rows.error();
+Finding shift(Context& context) {
+  const auto rows = need(context.demo_on_meshes());
   Finding finding;
   finding.plot = {.x_label = "nodes", .y_label = "shift of the gland [mm]", .log_x = true};
   finding.value = 0.0;
   double finest = 0.0;
-  for (const DemoOnMesh& row : *rows) {
+  for (const DemoOnMesh& row : rows) {
     auto& curves = finding.plot.curves;
     if (curves.empty() || curves.back().label != row.method) {
       finest = row.target_shift_mm;
-      curves.push_back({.label = row.method, .x = {}, .y = {}});
+      curves.push_back({.label = row.method});
       if (row.method != kDefault) curves.back().kind = Curve::Kind::reference;
     }
     curves.back().add(row.nodes, row.target_shift_mm);

@@ -64,9 +64,8 @@ std::vector<PointForce> spread(const TetMesh& mesh, const MaterialPoint& at, con
 }
 
 /// The forces on the tissue at the largest shift of the gland on the way in.
-Result<std::vector<TissueForce>> forces_at_largest_shift(const std::shared_ptr<const Model>& model) {
-  auto motion = TargetMotion::of(*model);
-  if (!motion) return motion.error();
+std::vector<TissueForce> forces_at_largest_shift(const std::shared_ptr<const Model>& model) {
+  auto motion = need(TargetMotion::of(*model));
   Simulation simulation(model);
   const PlannedInsertion& plan = model->insertions().front();
   simulation.place(plan);
@@ -79,13 +78,13 @@ Result<std::vector<TissueForce>> forces_at_largest_shift(const std::shared_ptr<c
     simulation.prepare();
     simulation.step(plan.motion.at(static_cast<double>(k) * dt_s), dt_s);
     if (k % every != 0) continue;
-    const double shift = motion->now(simulation.insertion()).motion.shift_mm.norm();
+    const double shift = motion.now(simulation.insertion()).motion.shift_mm.norm();
     if (shift <= furthest) continue;
     furthest = shift;
     forces = simulation.insertion().tissue_forces();
   }
   if (forces.empty())
-    return failure("large motion", "the needle did not move the gland", "Run stylet insert to see why");
+    throw Failed{failure("large motion", "the needle did not move the gland", "Run stylet insert to see why")};
   return forces;
 }
 
@@ -180,38 +179,34 @@ struct HoleResult {
   Curve ours, theirs;
 };
 
-Result<HoleResult> through(const TetMesh& mesh, const char* hole, const Progress& progress) {
+HoleResult through(const TetMesh& mesh, const char* hole, const Progress& progress) {
   Scenario scenario = measure::demo_scenario();
   scenario.mesh.nodes = kNodes;
   scenario.output.frames_per_s = 0.0;
   scenario.insertions.front().hole = hole;
   scenario.insertions.front().dwell_s = 0.0;
   scenario.insertions.front().retract = false;
-  const auto model = Model::compile(scenario, mesh, "the demo", {}, progress);
-  if (!model) return model.error();
-  const auto forces = forces_at_largest_shift(*model);
-  if (!forces) return forces.error();
+  const auto model = need(Model::compile(scenario, mesh, "the demo", {}, progress));
+  const auto forces = forces_at_largest_shift(model);
 
   std::vector<Index> fixed;
-  for (const Index node : (*model)->tissue().fixed_nodes()) {
+  for (const Index node : model->tissue().fixed_nodes()) {
     if (node < mesh.node_count()) fixed.push_back(node);
   }
-  const auto tissue = Tissue::build(mesh, (*model)->tissue().materials(), fixed, {}, Element::p2);
-  if (!tissue) return tissue.error();
+  const auto tissue = need(Tissue::build(mesh, model->tissue().materials(), fixed, {}, Element::p2));
   const auto response =
-      VolumeResponse::solve((*model)->tissue(), (*model)->target_regions(), VolumeResponse::Accuracy::quadratic);
-  if (!response) return response.error();
-  VecX load = VecX::Zero(3 * Eigen::Index{tissue->displacement_nodes()});
+      need(VolumeResponse::solve(model->tissue(), model->target_regions(), VolumeResponse::Accuracy::quadratic));
+  VecX load = VecX::Zero(3 * Eigen::Index{tissue.displacement_nodes()});
   VolumeMotion at_points;
   VolumeMotion linear;
-  for (const TissueForce& tissue_force : *forces) {
-    response->add(tissue_force.at, tissue_force.force, at_points);
+  for (const TissueForce& tissue_force : forces) {
+    response.add(tissue_force.at, tissue_force.force, at_points);
     for (const PointForce& part : spread(mesh, tissue_force.at, tissue_force.force)) {
-      response->add(part.at, part.force, linear);
-      const Shape shape = tissue->shape(part.at.tet, part.at.weights);
+      response.add(part.at, part.force, linear);
+      const Shape shape = tissue.shape(part.at.tet, part.at.weights);
       for (int i = 0; i < shape.count; ++i) {
         const auto k = static_cast<std::size_t>(i);
-        if (!tissue->is_fixed(shape.node[k]))
+        if (!tissue.is_fixed(shape.node[k]))
           load.segment<3>(3 * Eigen::Index{shape.node[k]}) += shape.weight[k] * part.force;
       }
     }
@@ -219,16 +214,15 @@ Result<HoleResult> through(const TetMesh& mesh, const char* hole, const Progress
   HoleResult result;
   result.at_points_mm = at_points.shift_mm.norm();
   result.factor = kFurthest_mm / linear.shift_mm.norm();
-  const auto moments = load_with_calculix(*tissue, result.factor * load);
-  if (!moments) return moments.error();
-  const GlandOf gland(*tissue, (*model)->target_regions());
+  const auto moments = need(load_with_calculix(tissue, result.factor * load));
+  const GlandOf gland(tissue, model->target_regions());
   result.ours = {.label = fmt::format("hole {}", hole), .x = {0.0}, .y = {0.0}};
   result.theirs = {
       .label = fmt::format("hole {}, neo-Hookean", hole), .x = {0.0}, .y = {0.0}, .kind = Curve::Kind::reference};
-  for (const LoadedMoment& moment : *moments) {
+  for (const LoadedMoment& moment : moments) {
     const double factor = result.factor * moment.share;
     const VolumeMotion without_turn = times(linear, factor);
-    const VolumeMotion ours = response->finite(without_turn);
+    const VolumeMotion ours = response.finite(without_turn);
     const Seen theirs = gland.motion(moment.u);
     const double error = error_of(ours, theirs);
     result.worst = worse(result.worst, error);
@@ -242,34 +236,30 @@ Result<HoleResult> through(const TetMesh& mesh, const char* hole, const Progress
   return result;
 }
 
-Result<Finding> large_motion(Context& context) {
-  if (!calculix_installed())
-    return Finding::skip("CalculiX (the program ccx, Debian package calculix-ccx) is not installed.");
-  const auto meshed = measure::mesh_demo(kNodes, context.progress());
-  if (!meshed) return meshed.error();
-  Finding finding;
-  finding.value = 0.0;
+Finding large_motion(Context& context) {
+  if (!calculix_installed()) throw Skipped{"CalculiX (the program ccx, Debian package calculix-ccx) is not installed."};
+  const auto meshed = need(measure::mesh_demo(kNodes, context.progress()));
+  Finding finding{.value = 0.0};
   finding.plot = {.x_label = "forces / needle’s own forces", .y_label = "shift of the gland’s base [mm]"};
   for (const char* hole : kHoles) {
-    const auto result = through(meshed->mesh, hole, context.progress());
-    if (!result) return result.error();
+    const auto result = through(meshed.mesh, hole, context.progress());
     constexpr double enough = 0.9 * kFurthest_mm;
-    finding.value = worse(finding.value, result->reached_mm >= enough ? result->worst : std::nan(""));
+    finding.value = worse(finding.value, result.reached_mm >= enough ? result.worst : std::nan(""));
     finding.note += fmt::format(
         "Hole {}: a shift of {:.1f} mm and a turn of {:.0f}° are reached with {:.2f} times the needle’s own forces, "
         "which move the gland by {:.1f} mm. The largest error is {:.2f} of the allowed one, {:.2f} without the exact "
         "rotation, {:.2f} up to the needle’s own forces. ",
-        hole, result->reached_mm, result->turn_deg, result->factor, result->at_points_mm, result->worst,
-        result->worst_linear, result->worst_needle);
-    finding.plot.curves.push_back(result->ours);
-    finding.plot.curves.push_back(result->theirs);
+        hole, result.reached_mm, result.turn_deg, result.factor, result.at_points_mm, result.worst, result.worst_linear,
+        result.worst_needle);
+    finding.plot.curves.push_back(result.ours);
+    finding.plot.curves.push_back(result.theirs);
   }
   finding.note += fmt::format(
       "The forces on the tissue at the largest shift of the gland, including those kept by creep, are each spread over "
       "{:g} mm and increased in proportion until the gland’s shift is {:g} mm. The mean shifts of the gland and of its "
       "thirds are compared; the allowed error is 0.5 mm or a tenth of the shift, whichever is larger. Both use the "
       "same mesh of {} nodes with quadratic elements.",
-      kSpread_mm, kFurthest_mm, meshed->mesh.node_count());
+      kSpread_mm, kFurthest_mm, meshed.mesh.node_count());
   return finding;
 }
 

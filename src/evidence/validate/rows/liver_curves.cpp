@@ -28,32 +28,18 @@ constexpr double kUnbreakable_N = 50.0;
 using Law = std::function<double(double)>;  ///< force [N] at a depth [mm]
 
 /// Presses the tip into liver with a modulus and a stiffening κ.
-Result<Drive> press(double young_kPa, double stiffening, double puncture_N) {
-  Block block;
-  block.scenario.tissue_model.preset = TissuePreset::linear;
-  block.gland_radius_mm = 0.0;
+Drive press(double young_kPa, double stiffening, double puncture_N) {
+  Block block = Block::of_one_tissue(TissuePreset::linear);
   TissueParameters& tissue = block.tissue("body");
   tissue.young_kPa = young_kPa;
   tissue.stiffening = stiffening;
   tissue.puncture_N = puncture_N;
-  const auto model = block.compile();
-  if (!model) return model.error();
-  Drive drive(*model, 0.0);
+  Drive drive(need(block.compile()), 0.0);
   drive.go(okamura::kPunctureDepth.mean + 2.0 * okamura::kPunctureDepth.deviation, okamura::kSpeed_mm_per_s, 20e-3);
   return drive;
 }
 
-Curve pressing_curve(const Drive& drive, std::string label) {
-  return {.label = std::move(label),
-          .x = column(drive.steps(), &Step::base_depth_mm),
-          .y = column(drive.steps(), &Step::force_axial_N)};
-}
-
-Result<Curve> unbroken(double stiffening) {
-  const auto drive = press(kReference_kPa, stiffening, kUnbreakable_N);
-  if (!drive) return drive.error();
-  return pressing_curve(*drive, "");
-}
+Curve unbroken(double stiffening) { return curve_of(press(kReference_kPa, stiffening, kUnbreakable_N), ""); }
 
 double at(const Curve& curve, double depth_mm) { return interpolated(curve.x, curve.y, depth_mm); }
 
@@ -92,7 +78,7 @@ struct Fit {
   double stiffening = 0.0;
   double young_kPa = 0.0;
 };
-Result<Fit> fit_to_lower_half(const Law& published) {
+Fit fit_to_lower_half(const Law& published) {
   const double wanted = published(kFittedTo_mm) / published(kFrom_mm);
   double low = 0.01;
   double high = 10.0;
@@ -100,9 +86,8 @@ Result<Fit> fit_to_lower_half(const Law& published) {
   for (int k = 0; k < 14; ++k) {
     fit.stiffening = std::sqrt(low * high);
     const auto curve = unbroken(fit.stiffening);
-    if (!curve) return curve.error();
-    (at(*curve, kFittedTo_mm) / at(*curve, kFrom_mm) < wanted ? low : high) = fit.stiffening;
-    fit.young_kPa = kReference_kPa * published(kFittedTo_mm) / at(*curve, kFittedTo_mm);
+    (at(curve, kFittedTo_mm) / at(curve, kFrom_mm) < wanted ? low : high) = fit.stiffening;
+    fit.young_kPa = kReference_kPa * published(kFittedTo_mm) / at(curve, kFittedTo_mm);
   }
   return fit;
 }
@@ -113,7 +98,7 @@ std::string ratios(const Curve& curve, const Law& published) {
 }
 
 Plot plot_of(std::vector<Curve> curves, const Law& published) {
-  Curve reference{.label = "published", .x = {}, .y = {}, .kind = Curve::Kind::reference};
+  Curve reference{.label = "published", .kind = Curve::Kind::reference};
   for (const double z : compared_depths()) reference.add(z, published(z));
   curves.push_back(std::move(reference));
   return {.x_label = "base depth [mm]", .y_label = "axial force [N]", .curves = std::move(curves)};
@@ -124,20 +109,18 @@ constexpr const char* kSecondHand =
     "second hand.";
 constexpr const char* kNotBetter = " The law is not better than linear tissue, so no value is given.";
 
-Result<Finding> liver_curve(Context&) {
+Finding liver_curve(Context&) {
   const Law published = okamura::stiffness_N;
   const auto fit = fit_to_lower_half(published);
-  if (!fit) return fit.error();
-  const auto drive = press(fit->young_kPa, fit->stiffening, okamura::kPuncture.mean);
-  const auto whole = press(fit->young_kPa, fit->stiffening, kUnbreakable_N);
+  const auto drive = press(fit.young_kPa, fit.stiffening, okamura::kPuncture.mean);
+  const auto whole = press(fit.young_kPa, fit.stiffening, kUnbreakable_N);
   const auto straight = unbroken(0.0);
-  if (!drive || !whole || !straight) return !drive ? drive.error() : !whole ? whole.error() : straight.error();
-  const Curve law = pressing_curve(*whole, "stiffening dent");
+  const Curve law = curve_of(whole, "stiffening dent");
   double linear_kPa = 0.0;
-  const Curve linear = scaled_to(published, *straight, "linear tissue", linear_kPa);
+  const Curve linear = scaled_to(published, straight, "linear tissue", linear_kPa);
   const double off = rms_percent(law, published);
   const double linear_off = rms_percent(linear, published);
-  const Event* puncture = drive->event(EventKind::puncture);
+  const Event* puncture = drive.event(EventKind::puncture);
   Finding finding;
   if (off < linear_off) finding.value = off;
   finding.note = fmt::format(
@@ -146,7 +129,7 @@ Result<Finding> liver_curve(Context&) {
       "surface breaks at {}. Ratios of simulated to published force at 2, 5 and 10 mm: {}. The null model, linear "
       "tissue with the modulus that fits the whole curve best ({:.0f} kPa), gives {:.1f} % and the ratios {}. {} The "
       "law is a parabola too. The row tests that far field (which stays linear), mesh and needle preserve its form.{}",
-      fit->young_kPa, fit->stiffening, kFrom_mm, kFittedTo_mm, okamura::kPunctureDepth.mean, okamura::kPuncture.mean,
+      fit.young_kPa, fit.stiffening, kFrom_mm, kFittedTo_mm, okamura::kPunctureDepth.mean, okamura::kPuncture.mean,
       puncture != nullptr ? fmt::format("{:.1f} mm", puncture->depth_mm) : "none of the simulated depths",
       ratios(law, published), linear_kPa, linear_off, ratios(linear, published), kSecondHand,
       off < linear_off ? "" : kNotBetter);
@@ -157,17 +140,15 @@ Result<Finding> liver_curve(Context&) {
   return finding;
 }
 
-Result<Finding> liver_other_curve(Context&) {
+Finding liver_other_curve(Context&) {
   const auto fit = fit_to_lower_half(okamura::stiffness_N);
-  if (!fit) return fit.error();
   const Law published = okamura::other_stiffness_N;
-  const auto bent = unbroken(fit->stiffening);
+  const auto bent = unbroken(fit.stiffening);
   const auto straight = unbroken(0.0);
-  if (!bent || !straight) return !bent ? bent.error() : straight.error();
   double young_kPa = 0.0;
   double linear_kPa = 0.0;
-  const Curve law = scaled_to(published, *bent, "stiffening dent", young_kPa);
-  const Curve linear = scaled_to(published, *straight, "linear tissue", linear_kPa);
+  const Curve law = scaled_to(published, bent, "stiffening dent", young_kPa);
+  const Curve linear = scaled_to(published, straight, "linear tissue", linear_kPa);
   const double off = rms_percent(law, published);
   const double linear_off = rms_percent(linear, published);
   Finding finding;
@@ -179,8 +160,8 @@ Result<Finding> liver_other_curve(Context&) {
       "that fits best ({:.1f} kPa), gives {:.1f} % and the ratios {}. The depth of this liver’s puncture is not known, "
       "so the curve is compared up to the other liver’s mean depth. {} Speed is not tested: both curves are for {:g} "
       "mm/s, and the law does not depend on speed.{}",
-      young_kPa, fit->stiffening, ratios(law, published), linear_kPa, linear_off, ratios(linear, published),
-      kSecondHand, okamura::kSpeed_mm_per_s, off < linear_off ? "" : kNotBetter);
+      young_kPa, fit.stiffening, ratios(law, published), linear_kPa, linear_off, ratios(linear, published), kSecondHand,
+      okamura::kSpeed_mm_per_s, off < linear_off ? "" : kNotBetter);
   finding.why_missed =
       "One κ does not fit both curves: this one starts 24 times softer and stiffens ten times as fast.";
   finding.plot = plot_of({law, linear}, published);

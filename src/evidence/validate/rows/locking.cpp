@@ -18,30 +18,27 @@ struct Case {
   std::vector<int> cells;  ///< cells along an edge; the last mesh is judged
 };
 
-Result<Finding> locking(Context&) {
+Finding locking(Context&) {
   const Material nearly{0.02, 0.499};
-  const auto fine = press_block(nearly, 12, Element::p2);
-  if (!fine) return fine.error();
-  Finding finding;
-  finding.value = 0.0;
+  const auto fine = need(press_block(nearly, 12, Element::p2));
+  Finding finding{.value = 0.0};
   std::string each;
   for (const Case& chosen :
        {Case{Element::nodal_pressure, "averaged pressure (default)", {4, 6, 8, 12, 16}},
         Case{Element::p2, "quadratic", {2, 3, 4, 6, 8}}, Case{Element::p1, "linear", {4, 6, 8, 12, 16}}}) {
-    Curve curve{.label = chosen.label, .x = {}, .y = {}};
+    Curve curve{.label = chosen.label};
     for (const int cells : chosen.cells) {
-      const auto found = press_block(nearly, cells, chosen.element);
-      if (!found) return found.error();
-      curve.add(found->displacement_nodes, found->dent_mm);
+      const auto found = need(press_block(nearly, cells, chosen.element));
+      curve.add(found.displacement_nodes, found.dent_mm);
     }
-    const double off = 100.0 * (curve.y.back() / fine->dent_mm - 1.0);
+    const double off = 100.0 * (curve.y.back() / fine.dent_mm - 1.0);
     each += fmt::format("{}{} {:+.1f} %", each.empty() ? "" : ", ", chosen.label, off);
     if (chosen.element != Element::p1) finding.value = worse(finding.value, std::abs(off));
     finding.plot.curves.push_back(std::move(curve));
   }
-  Curve reference{.label = "fine mesh", .x = {}, .y = {}, .kind = Curve::Kind::reference};
+  Curve reference{.label = "fine mesh", .kind = Curve::Kind::reference};
   for (const double x : {finding.plot.curves.front().x.front(), finding.plot.curves.front().x.back()}) {
-    reference.add(x, fine->dent_mm);
+    reference.add(x, fine.dent_mm);
   }
   finding.plot.curves.push_back(std::move(reference));
   finding.plot.x_label = "displacement nodes";

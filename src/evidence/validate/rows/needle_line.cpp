@@ -26,7 +26,7 @@ struct Forces {
   Curve axial;
 
   explicit Forces(const std::string& label, Curve::Kind kind = Curve::Kind::ours)
-      : lateral{.label = label, .x = {}, .y = {}, .kind = kind}, axial(lateral) {}
+      : lateral{.label = label, .kind = kind}, axial(lateral) {}
   void add(double x, double lateral_N, double axial_N) {
     lateral.add(x, lateral_N);
     axial.add(x, axial_N);
@@ -51,15 +51,15 @@ struct Study {
 /// A study that is measured at its first use.
 class Lazy {
  public:
-  explicit Lazy(Result<Study> (*measure)(Context&)) : measure_(measure) {}
-  const Result<Study>& operator()(Context& context) {
+  explicit Lazy(Study (*measure)(Context&)) : measure_(measure) {}
+  const Study& operator()(Context& context) {
     if (!study_) study_ = measure_(context);
     return *study_;
   }
 
  private:
-  Result<Study> (*measure_)(Context&);
-  std::optional<Result<Study>> study_;
+  Study (*measure_)(Context&);
+  std::optional<Study> study_;
 };
 
 constexpr Element kDefaultElement = Element::nodal_pressure;  ///< default element of coupling.method = "near-field"
@@ -83,7 +83,7 @@ void measure_methods(MediumBlock& block, NeedleLine::Options options, double x, 
 
 /// Measures the needle line in one block after the other. Only the near field is measured on the finest mesh, because
 /// only the near field is judged.
-Result<Study> over_meshes(Context& context, std::vector<int> cells, bool unbounded) {
+Study over_meshes(Context& context, std::vector<int> cells, bool unbounded) {
   Study study;
   study.ours = {Forces(kNearField), Forces(kNodeAddition), Forces(kEmbedded)};
   std::sort(cells.rbegin(), cells.rend());  // sizes ascend
@@ -91,10 +91,9 @@ Result<Study> over_meshes(Context& context, std::vector<int> cells, bool unbound
     report(context.progress(), fmt::format("{} nodes", (n + 1) * (n + 1) * (n + 1)), 0.0);
     for (const Element element : {kDefaultElement, Element::p1}) {
       if (element == Element::p1 && n > kFinestOfOthers) continue;
-      auto block = MediumBlock::build({.cells = n, .element = element});
-      if (!block) return block.error();
-      study.largest_factor_mb = std::max(study.largest_factor_mb, block->tissue->statistics().factor_mb);
-      measure_methods(*block, {.unbounded = unbounded}, kSide_mm / n, study);
+      auto block = need(MediumBlock::build({.cells = n, .element = element}));
+      study.largest_factor_mb = std::max(study.largest_factor_mb, block.tissue->statistics().factor_mb);
+      measure_methods(block, {.unbounded = unbounded}, kSide_mm / n, study);
     }
   }
   return study;
@@ -124,31 +123,28 @@ std::string ranges(const Study& study, bool lateral) {
 const char* const kNeedle =
     "A needle of 64 mm and 18 gauge, held every 4 mm, moved by 5 mm in a cube of 100 mm (10 kPa, ν 0.45)";
 
-Result<Study> unbounded_study(Context& context) {
+Study unbounded_study(Context& context) {
   auto study = over_meshes(context, {6, 7, 9, 11, 14}, true);
-  if (!study) return study.error();
   const Material material{MediumBlock::kYoung_MPa, MediumBlock::Options{}.poisson};
   const double radius = CouplingSettings{}.needle_radius_mm;
   const Medium medium{material.mu(), material.poisson};
   const auto cylinder = bonded_cylinder(NeedleLine::kLength_mm, radius, NeedleLine::kWay_mm, medium);
   const auto slender = slender_cylinder(NeedleLine::kLength_mm, radius, NeedleLine::kWay_mm, medium);
-  study->reference = {Forces("bonded cylinder, boundary elements", Curve::Kind::reference),
-                      Forces("slender body", Curve::Kind::reference)};
-  const std::vector<double> sizes = study->ours.front().lateral.x;
+  study.reference = {Forces("bonded cylinder, boundary elements", Curve::Kind::reference),
+                     Forces("slender body", Curve::Kind::reference)};
+  const std::vector<double> sizes = study.ours.front().lateral.x;
   for (const double h : {sizes.front(), sizes.back()}) {
-    study->reference[0].add(h, cylinder.lateral_N, cylinder.axial_N);
-    study->reference[1].add(h, slender.lateral_N, slender.axial_N);
+    study.reference[0].add(h, cylinder.lateral_N, cylinder.axial_N);
+    study.reference[1].add(h, slender.lateral_N, slender.axial_N);
   }
   return study;
 }
 
-Result<Finding> against_cylinder(const Result<Study>& study, bool lateral) {
-  if (!study) return study.error();
-  const Curve& ours = study->ours.front().of(lateral);
-  const double cylinder = study->reference[0].of(lateral).y.front();
-  const double slender = study->reference[1].of(lateral).y.front();
-  Finding finding;
-  finding.value = 0.0;
+Finding against_cylinder(const Study& study, bool lateral) {
+  const Curve& ours = study.ours.front().of(lateral);
+  const double cylinder = study.reference[0].of(lateral).y.front();
+  const double slender = study.reference[1].of(lateral).y.front();
+  Finding finding{.value = 0.0};
   double from_slender = 0.0;
   for (const double force : ours.y) {
     finding.value = worse(finding.value, 100.0 * std::abs(force / cylinder - 1.0));
@@ -159,41 +155,39 @@ Result<Finding> against_cylinder(const Result<Study>& study, bool lateral) {
       "Boundary elements give {:.2f} N, the formula for slender bodies {:.2f} N (largest difference {:.1f} %); {}. The "
       "boundary elements share only Kelvin’s solution with the coupling. The motion of the outer nodes is computed "
       "with the coupling’s own kernel, which agrees with Kelvin’s solution at this distance.",
-      kNeedle, cylinder, slender, from_slender, ranges(*study, lateral));
+      kNeedle, cylinder, slender, from_slender, ranges(study, lateral));
   finding.why_missed = "The kernel on the axis represents a slender cylinder and neglects its ends and R/L.";
-  finding.plot = study->plot("element size [mm]", lateral);
+  finding.plot = study.plot("element size [mm]", lateral);
   finding.plot.curves.pop_back();  // removes the slender body's curve, which would cover the cylinder's
   return finding;
 }
 
-Result<Study> box_study(Context& context) { return over_meshes(context, {7, 10, 14, 20, 36}, false); }
+Study box_study(Context& context) { return over_meshes(context, {7, 10, 14, 20, 36}, false); }
 
-Result<Finding> over_mesh_size(const Result<Study>& study, bool lateral) {
-  if (!study) return study.error();
+Finding over_mesh_size(const Study& study, bool lateral) {
   Finding finding;
-  finding.value = spread(study->ours.front().of(lateral));
+  finding.value = spread(study.ours.front().of(lateral));
   finding.note = fmt::format(
       "{} whose outer faces are held, with 512 … 50,653 nodes; the other methods up to 9,261 nodes. The value is the "
       "ratio of the largest to the smallest force, minus 1. {}. The factor of the finest mesh takes {:.1f} GB.",
-      kNeedle, ranges(*study, lateral), 1e-3 * study->largest_factor_mb);
+      kNeedle, ranges(study, lateral), 1e-3 * study.largest_factor_mb);
   finding.why_missed =
       "The remaining difference comes from the far field: it is represented by elements, and elements of 14 mm are "
       "stiffer than fine ones.";
-  finding.plot = study->plot("element size [mm]", lateral);
+  finding.plot = study.plot("element size [mm]", lateral);
   return finding;
 }
 
-Result<Finding> over_spacing(Context& context) {
+Finding over_spacing(Context& context) {
   constexpr int cells = 16;
   Study study;
   study.ours = {Forces(kNearField), Forces(kNodeAddition), Forces(kEmbedded)};
   for (const Element element : {kDefaultElement, Element::p1}) {
-    auto block = MediumBlock::build({.cells = cells, .element = element});
-    if (!block) return block.error();
+    auto block = need(MediumBlock::build({.cells = cells, .element = element}));
     for (const int pieces : {32, 24, 16, 12, 8}) {
       const double spacing = NeedleLine::kLength_mm / pieces;
       report(context.progress(), fmt::format("every {:.1f} mm", spacing), 0.0);
-      measure_methods(*block, {.spacing_mm = spacing}, spacing, study);
+      measure_methods(block, {.spacing_mm = spacing}, spacing, study);
     }
   }
   Finding finding;

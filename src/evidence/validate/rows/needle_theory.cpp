@@ -18,29 +18,25 @@ constexpr double kBalance_Nmm = 1e-8;
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// Compares the shape under a lateral load with the Euler–Bernoulli beam along the whole needle.
-Result<Finding> small_deflection(const std::string& model) {
+Finding small_deflection(const std::string& model) {
   const NeedleSection section;
-  auto needle = make_needle(model, section, 0, 8);
-  if (!needle) return needle.error();
+  auto needle = need(make_needle(model, section, 0, 8));
   const double length = section.length_mm;
-  Finding finding;
-  finding.value = 0.0;
+  Finding finding{.value = 0.0};
   for (const double a : {0.2 * length, 0.5 * length, length}) {
-    (*needle)->straighten();
+    needle->straighten();
     const std::vector<PointLoad> loads{{a, {0, kForce, 0}}};
-    if (auto found = find_equilibrium(**needle, loads, 1e-10); !found) return found.error();
+    need(find_equilibrium(*needle, loads, 1e-10));
     const double tip = cantilever_deflection(kForce, a, length, section.bending_stiffness_Nmm2);
-    Curve ours{.label = fmt::format("load at {:g} mm", a), .x = {}, .y = {}};
-    Curve theory{.label = "theory", .x = {}, .y = {}, .kind = Curve::Kind::reference};
+    Curve ours{.label = fmt::format("load at {:g} mm", a)};
+    Curve theory{.label = "theory", .kind = Curve::Kind::reference};
     for (int k = 0; k <= 40; ++k) {
       const double s = length * k / 40;
       const double exact = cantilever_deflection(kForce, a, s, section.bending_stiffness_Nmm2);
-      const double found = (*needle)->point(s).y();
+      const double found = needle->point(s).y();
       finding.value = worse(finding.value, 100.0 * std::abs(found - exact) / tip);
-      ours.x.push_back(s);
-      ours.y.push_back(1e3 * found);
-      theory.x.push_back(s);
-      theory.y.push_back(1e3 * exact);
+      ours.add(s, 1e3 * found);
+      theory.add(s, 1e3 * exact);
     }
     finding.plot.curves.push_back(std::move(ours));
     if (a == length) finding.plot.curves.push_back(std::move(theory));
@@ -54,26 +50,22 @@ Result<Finding> small_deflection(const std::string& model) {
 }
 
 /// Compares the tip's displacement under a dead load with the elastica, up to a slope of 60 degrees.
-Result<Finding> large_deflection(const std::string& model) {
+Finding large_deflection(const std::string& model) {
   const NeedleSection section;
-  auto needle = make_needle(model, section, 0, 8);
-  if (!needle) return needle.error();
-  Finding finding;
-  finding.value = 0.0;
-  Curve ours{.label = model, .x = {}, .y = {}};
-  Curve theory{.label = "elastica", .x = {}, .y = {}, .kind = Curve::Kind::reference};
+  auto needle = need(make_needle(model, section, 0, 8));
+  Finding finding{.value = 0.0};
+  Curve ours{.label = model};
+  Curve theory{.label = "elastica", .kind = Curve::Kind::reference};
   for (int degrees = 5; degrees <= 60; degrees += 5) {
     const Elastica exact(degrees * kDegree, section.length_mm, section.bending_stiffness_Nmm2);
     const std::vector<PointLoad> loads{{section.length_mm, {exact.force, 0, 0}}};
-    if (auto found = find_equilibrium(**needle, loads, kBalance_Nmm * 10.0); !found) return found.error();
-    const Vec3 tip = (*needle)->point(section.length_mm);
+    need(find_equilibrium(*needle, loads, kBalance_Nmm * 10.0));
+    const Vec3 tip = needle->point(section.length_mm);
     const double shortening = section.length_mm - exact.reach;
     finding.value = std::max({finding.value, 100.0 * std::abs(tip.x() / exact.deflection - 1.0),
                               100.0 * std::abs((section.length_mm - tip.z()) / shortening - 1.0)});
-    ours.x.push_back(exact.force);
-    ours.y.push_back(tip.x());
-    theory.x.push_back(exact.force);
-    theory.y.push_back(exact.deflection);
+    ours.add(exact.force, tip.x());
+    theory.add(exact.force, exact.deflection);
   }
   finding.plot = {.x_label = "force [N]", .y_label = "tip deflection [mm]", .curves = {ours, theory}};
   finding.note =

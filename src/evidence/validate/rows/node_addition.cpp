@@ -29,7 +29,7 @@ struct Cube {
   std::shared_ptr<const MatX> inverse;
 };
 
-Result<Cube> make_cube() {
+Cube make_cube() {
   Cube cube;
   TetMesh mesh = box_mesh({0, 0, 0}, {40, 40, 40}, {4, 4, 4}, 0.12);
   assign_regions(mesh, {"soft", "stiff"}, [](const Vec3& x) { return x.x() + 0.3 * x.y() < 26 ? 0 : 1; });
@@ -37,9 +37,8 @@ Result<Cube> make_cube() {
   std::iota(all.begin(), all.end(), 0);
   for (const Index node : all)
     if (mesh.nodes[static_cast<std::size_t>(node)].z() > 39.999) cube.fixed.push_back(node);
-  auto built = Tissue::build(std::move(mesh), kMaterials, cube.fixed);
-  if (!built) return built.error();
-  cube.tissue = std::make_shared<const Tissue>(std::move(*built));
+  auto built = need(Tissue::build(std::move(mesh), kMaterials, cube.fixed));
+  cube.tissue = std::make_shared<const Tissue>(std::move(built));
   cube.topology = std::make_unique<Topology>(cube.tissue->mesh());
   cube.locator = std::make_unique<Locator>(cube.tissue->mesh(), *cube.topology);
   auto store = std::make_shared<ComplianceStore>(cube.tissue);
@@ -51,23 +50,22 @@ Result<Cube> make_cube() {
 
 /// Largest difference between the compliance among the added nodes and the compliance of a new factorisation, relative
 /// to the largest entry of the latter.
-Result<double> difference(const Cube& cube, const ContactCompliance& compliance, const TetMesh& split) {
-  const auto fresh = Tissue::build(split, kMaterials, cube.fixed);
-  if (!fresh) return fresh.error();
+double difference(const Cube& cube, const ContactCompliance& compliance, const TetMesh& split) {
+  const auto fresh = need(Tissue::build(split, kMaterials, cube.fixed));
   const Index base = cube.tissue->mesh().node_count();
   const Index added = split.node_count() - base;
   MatX load = MatX::Zero(3 * split.node_count(), 3 * added);
   for (Index k = 0; k < added; ++k) load.block<3, 3>(3 * (base + k), 3 * k) = Mat3::Identity();
-  const MatX reference = fresh->solve(load).bottomRows(3 * added);
+  const MatX reference = fresh.solve(load).bottomRows(3 * added);
   const MatX ours = compliance.matrix().block(3, 3, 3 * added, 3 * added);
   return (ours - reference).cwiseAbs().maxCoeff() / reference.cwiseAbs().maxCoeff();
 }
 
 /// Adds nodes at random places, inside elements or on their faces, and checks the compliance after every kEvery nodes.
 /// @param mesh_of returns the mesh with the nodes added so far
-Result<Curve> add_nodes(const Cube& cube, ContactCompliance& compliance, const std::function<TetMesh()>& mesh_of,
-                        Placement placement, const std::string& label) {
-  Curve curve{.label = label, .x = {}, .y = {}};
+Curve add_nodes(const Cube& cube, ContactCompliance& compliance, const std::function<TetMesh()>& mesh_of,
+                Placement placement, const std::string& label) {
+  Curve curve{.label = label};
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> share(0.05, 1.0);
   std::uniform_int_distribution<Index> pick(0, cube.tissue->mesh().tet_count() - 1);
@@ -84,26 +82,21 @@ Result<Curve> add_nodes(const Cube& cube, ContactCompliance& compliance, const s
     if (compliance.add(at, x, placement, cube.locator->face_normal(at.tet, local)).point < 0) continue;
     if (++added % kEvery != 0) continue;
     const auto error = difference(cube, compliance, mesh_of());
-    if (!error) return error.error();
-    curve.x.push_back(added);
-    curve.y.push_back(*error);
+    curve.add(added, error);
   }
   return curve;
 }
 
-Result<Finding> node_additions(Context&) {
+Finding node_additions(Context&) {
   const auto cube = make_cube();
-  if (!cube) return cube.error();
-  Finding finding;
-  finding.value = 0.0;
+  Finding finding{.value = 0.0};
   finding.plot = {.x_label = "nodes added", .y_label = "relative error", .log_y = true};
   using Engine = paper::DenseInverse::Engine;
   for (const Placement placement : {Placement::interior, Placement::face}) {
     const std::string rule = placement == Placement::interior ? "interior" : "paper";
-    TrackCompliance condensed(cube->store, *cube->locator, kAddedNodes);
-    paper::InverseCompliance woodbury(cube->tissue, *cube->locator, cube->inverse, Engine::woodbury, false,
-                                      kAddedNodes);
-    paper::InverseCompliance switches(cube->tissue, *cube->locator, cube->inverse, Engine::bcs, false, kAddedNodes);
+    TrackCompliance condensed(cube.store, *cube.locator, kAddedNodes);
+    paper::InverseCompliance woodbury(cube.tissue, *cube.locator, cube.inverse, Engine::woodbury, false, kAddedNodes);
+    paper::InverseCompliance switches(cube.tissue, *cube.locator, cube.inverse, Engine::bcs, false, kAddedNodes);
     struct Engines {
       const char* name;
       ContactCompliance& compliance;
@@ -112,18 +105,16 @@ Result<Finding> node_additions(Context&) {
     for (const Engines& engine : {Engines{"condensed", condensed, [&] { return condensed.mesh().materialise(); }},
                                   Engines{"woodbury", woodbury, [&] { return woodbury.mesh().materialise(); }},
                                   Engines{"bcs", switches, [&] { return switches.mesh().materialise(); }}}) {
-      auto curve =
-          add_nodes(*cube, engine.compliance, engine.mesh, placement, fmt::format("{}, {}", engine.name, rule));
-      if (!curve) return curve.error();
-      for (const double error : curve->y) finding.value = worse(finding.value, error);
-      finding.plot.curves.push_back(std::move(*curve));
+      auto curve = add_nodes(cube, engine.compliance, engine.mesh, placement, fmt::format("{}, {}", engine.name, rule));
+      for (const double error : curve.y) finding.value = worse(finding.value, error);
+      finding.plot.curves.push_back(std::move(curve));
     }
   }
   finding.note = fmt::format(
       "{} nodes are added at random places to a mesh of {} nodes, with both rules and three engines: shortcut and "
       "bordered update (condensed), Woodbury’s formula, and boundary condition switches. The value is the largest "
       "error.",
-      kAddedNodes, cube->tissue->mesh().node_count());
+      kAddedNodes, cube.tissue->mesh().node_count());
   return finding;
 }
 

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
-#include <limits>
 
 namespace stylet::validate {
 
@@ -33,13 +32,12 @@ struct OkamuraRecording {
   double contact_mm = 0.0;  ///< depth of the contact on the recording's own scale
 };
 
-Result<OkamuraRecording> read_recording_of(const std::filesystem::path& file) {
-  const auto columns = read_number_table(file);
-  if (!columns) return columns.error();
-  if (columns->size() < 2)
-    return input_error(file.string(), "there are fewer than two columns", "Use the file as it was published");
-  const auto& depth = (*columns)[0];
-  const auto& force = (*columns)[1];
+OkamuraRecording read_recording_of(const std::filesystem::path& file) {
+  const auto columns = need(read_number_table(file));
+  if (columns.size() < 2)
+    throw Failed{input_error(file.string(), "there are fewer than two columns", "Use the file as it was published")};
+  const auto& depth = columns[0];
+  const auto& force = columns[1];
   const double most = *std::max_element(depth.begin(), depth.end());
   // The points are not sorted and several forces have the same depth, so they are averaged in bins.
   const auto bins = static_cast<std::size_t>(1e3 * most / kBin_mm) + 1;
@@ -72,15 +70,13 @@ Result<OkamuraRecording> read_recording_of(const std::filesystem::path& file) {
     }
   }
   if (out.force_N.size() < 10)
-    return input_error(file.string(), "the force does not rise", "Use the file as it was published");
+    throw Failed{input_error(file.string(), "the force does not rise", "Use the file as it was published")};
   return out;
 }
 
 /// Simulates the insertion with published parameters and the two fitted ones.
-Result<Curve> simulate(double young_kPa, double puncture_N, double depth_mm) {
-  Block block;
-  block.scenario.tissue_model.preset = TissuePreset::linear;
-  block.gland_radius_mm = 0.0;
+Curve simulate(double young_kPa, double puncture_N, double depth_mm) {
+  Block block = Block::of_one_tissue(TissuePreset::linear);
   TissueParameters& tissue = block.tissue("body");
   tissue.young_kPa = young_kPa;
   tissue.puncture_N = puncture_N;
@@ -88,13 +84,9 @@ Result<Curve> simulate(double young_kPa, double puncture_N, double depth_mm) {
   tissue.friction_static_N_per_m = okamura::kStatic_N_per_m;
   tissue.friction_coulomb_N_per_m = okamura::kCoulomb_N_per_m;
   tissue.friction_viscous_Ns_per_m2 = okamura::kViscous_Ns_per_m2;
-  const auto model = block.compile();
-  if (!model) return model.error();
-  Drive drive(*model, 0.0);
+  Drive drive(need(block.compile()), 0.0);
   drive.go(depth_mm, okamura::kSpeed_mm_per_s, 10e-3);
-  return Curve{.label = "simulated",
-               .x = column(drive.steps(), &Step::base_depth_mm),
-               .y = column(drive.steps(), &Step::force_axial_N)};
+  return curve_of(drive, "simulated");
 }
 
 double rms(const OkamuraRecording& recording, const Curve& curve) {
@@ -104,28 +96,21 @@ double rms(const OkamuraRecording& recording, const Curve& curve) {
   return std::sqrt(sum / static_cast<double>(recording.depth_mm.size()));
 }
 
-Result<Finding> force_over_depth(Context& context) {
-  const auto path = context.data(kFile);
-  if (!path) return Finding::skip(context.no_data(kFile));
-  const auto recording = read_recording_of(*path);
-  if (!recording) return recording.error();
+Finding force_over_depth(Context& context) {
+  const auto recording = read_recording_of(need_file(context, kFile));
   // The puncture force is taken from the recording. The logarithm of the modulus is fitted.
   const auto simulated = [&](double log_kPa) {
-    return simulate(std::exp(log_kPa), recording->first_peak_N, recording->depth_mm.back());
+    return simulate(std::exp(log_kPa), recording.first_peak_N, recording.depth_mm.back());
   };
-  const auto rms_at = [&](double log_kPa) {
-    const auto curve = simulated(log_kPa);
-    return curve ? rms(*recording, *curve) : std::numeric_limits<double>::infinity();
-  };
+  const auto rms_at = [&](double log_kPa) { return rms(recording, simulated(log_kPa)); };
   const auto [best_log_kPa, best_rms] =
       boost::math::tools::brent_find_minima(rms_at, std::log(kSoftest_kPa), std::log(kStiffest_kPa), 12);
   const auto best = simulated(best_log_kPa);
-  if (!best) return best.error();
   const double best_kPa = std::exp(best_log_kPa);
-  const double peak = *std::max_element(recording->force_N.begin(), recording->force_N.end());
+  const double peak = *std::max_element(recording.force_N.begin(), recording.force_N.end());
   const double punch_kPa = okamura::modulus_kPa(Scenario{}.needle.diameter_mm, default_tissue("body").poisson);
   const bool plausible =
-      std::abs(recording->first_peak_N - okamura::kPuncture.mean) <= 2.0 * okamura::kPuncture.deviation;
+      std::abs(recording.first_peak_N - okamura::kPuncture.mean) <= 2.0 * okamura::kPuncture.deviation;
   const bool at_edge = best_kPa <= 1.05 * kSoftest_kPa || best_kPa >= 0.95 * kStiffest_kPa;
   Finding finding;
   finding.value = 100.0 * best_rms / peak;
@@ -133,7 +118,7 @@ Result<Finding> force_over_depth(Context& context) {
       "Fitted: puncture force {:.2f} N (study: 2.30 ± 0.83 N, {}) and modulus {:.0f} kPa{} (from the study’s stiffness "
       "and a flat punch: {:.0f} kPa). From the literature: cutting force 0.94 N, friction 18.5 and 10.6 N/m and "
       "212 N s/m². The value is the RMS difference, relative to the largest force of the recording.",
-      recording->first_peak_N, plausible ? "within two standard deviations" : "outside two standard deviations",
+      recording.first_peak_N, plausible ? "within two standard deviations" : "outside two standard deviations",
       best_kPa, at_edge ? ", at the end of the searched range" : "", punch_kPa);
   finding.why_missed =
       "The recording shows two layers, each with a membrane: the force falls to 0.2 N, below the cutting force of "
@@ -142,9 +127,8 @@ Result<Finding> force_over_depth(Context& context) {
   finding.plot = {
       .x_label = "depth from contact [mm]",
       .y_label = "axial force [N]",
-      .curves = {
-          *best,
-          {.label = "recorded", .x = recording->depth_mm, .y = recording->force_N, .kind = Curve::Kind::points}}};
+      .curves = {best,
+                 {.label = "recorded", .x = recording.depth_mm, .y = recording.force_N, .kind = Curve::Kind::points}}};
   return finding;
 }
 

@@ -34,19 +34,18 @@ struct Timed {
 };
 
 /// Times a needle through the ball, from the face opposite to the held face. Steps count from half of the depth on.
-Result<Timed> time_steps(const std::filesystem::path& file, const Progress& progress) {
-  auto mesh = read_tet_mesh(file, {.scale = 1000.0});
-  if (!mesh) return mesh.error();
+Timed time_steps(const std::filesystem::path& file, const Progress& progress) {
+  auto mesh = need(read_tet_mesh(file, {.scale = 1000.0}));
   Eigen::AlignedBox3d box;
-  for (const Vec3& x : mesh->nodes) box.extend(x);
+  for (const Vec3& x : mesh.nodes) box.extend(x);
   Scenario scenario;
   scenario.patient.source = file.filename().string();
   scenario.tissue_model.preset = TissuePreset::linear;
-  for (const std::string& region : mesh->regions) {
+  for (const std::string& region : mesh.regions) {
     TissueParameters tissue = default_tissue("body", TissuePreset::linear);
     tissue.young_kPa = 20.0;
     tissue.poisson = 0.45;
-    tissue.puncture_N = region == mesh->regions.front() ? tissue.puncture_N : 0.0;
+    tissue.puncture_N = region == mesh.regions.front() ? tissue.puncture_N : 0.0;
     scenario.tissue[region] = tissue;
   }
   scenario.fixed.outer = OuterSupport::none;
@@ -60,12 +59,11 @@ Result<Timed> time_steps(const std::filesystem::path& file, const Progress& prog
   plan.depth_mm = 0.8 * (hi.z() - lo.z());
   scenario.insertions.push_back(plan);
   Timed timed;
-  timed.nodes = mesh->node_count();
-  const auto model = Model::compile(scenario, std::move(*mesh), file.filename().string(), {}, progress);
-  if (!model) return model.error();
+  timed.nodes = mesh.node_count();
+  const auto model = need(Model::compile(scenario, std::move(mesh), file.filename().string(), {}, progress));
 
-  Simulation simulation(*model);
-  const PlannedInsertion& insertion = (*model)->insertions().front();
+  Simulation simulation(model);
+  const PlannedInsertion& insertion = model->insertions().front();
   simulation.place(insertion.motion.at(0.0), insertion.entry, insertion.direction);
   std::vector<double> ms;
   constexpr double dt = 1e-3;
@@ -82,21 +80,18 @@ Result<Timed> time_steps(const std::filesystem::path& file, const Progress& prog
   return timed;
 }
 
-Result<Finding> step_time(Context& context) {
+Finding step_time(Context& context) {
   Finding finding;
-  Curve ours{.label = "Stylet on this machine: insertion", .x = {}, .y = {}};
+  Curve ours{.label = "Stylet on this machine: insertion"};
   std::string each;
   for (const char* name : {"sphere_in_box_573.msh", "sphere_in_box_5037.msh"}) {
     const std::string file = std::string("sphere_in_box/") + name;
-    const auto path = context.data(file);
-    if (!path) return Finding::skip(context.no_data(file));
-    const auto timed = time_steps(*path, context.progress());
-    if (!timed) return timed.error();
-    ours.x.push_back(timed->nodes);
-    ours.y.push_back(timed->median_ms);
-    finding.value = timed->median_ms;
-    each += fmt::format(" {:.0f} nodes: median {:.3f} ms, worst {:.2f} ms, {} contacts.", timed->nodes,
-                        timed->median_ms, timed->worst_ms, timed->contacts);
+    const auto path = need_file(context, file);
+    const auto timed = time_steps(path, context.progress());
+    ours.add(timed.nodes, timed.median_ms);
+    finding.value = timed.median_ms;
+    each += fmt::format(" {:.0f} nodes: median {:.3f} ms, worst {:.2f} ms, {} contacts.", timed.nodes, timed.median_ms,
+                        timed.worst_ms, timed.contacts);
   }
   finding.note =
       "Processor time of a step from half of the depth on." + each +

@@ -29,52 +29,47 @@ struct Flattened {
   double lift_mm = 0.0;
   Vec3 force_N = Vec3::Zero();
   GlandForm gland;
-  Curve depth{.label = "anterior-posterior", .x = {}, .y = {}};
-  Curve width{.label = "left-right", .x = {}, .y = {}};
-  Curve length{.label = "superior-inferior", .x = {}, .y = {}};
+  Curve depth{.label = "anterior-posterior"};
+  Curve width{.label = "left-right"};
+  Curve length{.label = "superior-inferior"};
 };
 
 /// The gland of the demo patient under a bare probe and under a probe in a balloon, each found once for all rows.
 class ProbeStudy {
  public:
-  Result<Flattened> flatten(double to_percent, double balloon_mm) {
+  Flattened flatten(double to_percent, double balloon_mm) {
     const std::pair study(to_percent, balloon_mm);
     const auto known = found_.find(study);
     if (known != found_.end()) return known->second;
-    auto found = find(to_percent, balloon_mm);
-    if (found) found_.emplace(study, *found);
-    return found;
+    return found_.emplace(study, find(to_percent, balloon_mm)).first->second;
   }
 
  private:
-  Result<Flattened> find(double to_percent, double balloon_mm) {
+  Flattened find(double to_percent, double balloon_mm) {
     if (!demo_) {
-      auto demo = measure::probed_demo(kProbeNodes);
-      if (!demo) return demo.error();
-      demo_ = std::make_unique<measure::ProbedDemo>(std::move(*demo));
+      auto demo = need(measure::probed_demo(kProbeNodes));
+      demo_ = std::make_unique<measure::ProbedDemo>(std::move(demo));
     }
     ProbeSettings at;
     at.kind = ProbeKind::biplane;
     at.balloon_mm = balloon_mm;
-    const auto seat = probe_seat(demo_->tissue->mesh(), demo_->gland, "demo");
-    if (!seat) return seat.error();
-    at.depth_mm = seat->gland_mm + kBeyondMiddle_mm;
-    auto probe = PatientProbe::prepare(demo_->patient(), at, "demo");
-    if (!probe) return probe.error();
+    const auto seat = need(probe_seat(demo_->tissue->mesh(), demo_->gland, "demo"));
+    at.depth_mm = seat.gland_mm + kBeyondMiddle_mm;
+    auto probe = need(PatientProbe::prepare(demo_->patient(), at, "demo"));
     Flattened found;
     for (at.lift_mm = -5.0; at.lift_mm <= kMostLift_mm; at.lift_mm += kLiftStep_mm) {
-      found.force_N = probe->press(at).force_N;
-      found.gland = probe->gland();
+      found.force_N = probe.press(at).force_N;
+      found.gland = probe.gland();
       found.lift_mm = at.lift_mm;
       found.depth.add(at.lift_mm, found.gland.change_percent.y());
       found.width.add(at.lift_mm, found.gland.change_percent.x());
       found.length.add(at.lift_mm, found.gland.change_percent.z());
       if (found.gland.change_percent.y() <= to_percent) return found;
     }
-    return failure("demo",
-                   fmt::format("a lift of {:g} mm flattens the gland by {:.1f} % only", kMostLift_mm,
-                               -found.gland.change_percent.y()),
-                   "Look at the wall that the probe reaches");
+    throw Failed{failure("demo",
+                         fmt::format("a lift of {:g} mm flattens the gland by {:.1f} % only", kMostLift_mm,
+                                     -found.gland.change_percent.y()),
+                         "Look at the wall that the probe reaches")};
   }
 
   std::unique_ptr<measure::ProbedDemo> demo_;
@@ -88,27 +83,26 @@ double change_of(const GlandForm& gland, Size size) {
   return size == Size::width ? gland.change_percent.x() : gland.change_percent.z();
 }
 
-Result<Finding> flattened_gland(ProbeStudy& study, double to_percent, double balloon_mm, Size size,
-                                const std::string& published) {
+Finding flattened_gland(ProbeStudy& study, double to_percent, double balloon_mm, Size size,
+                        const std::string& published) {
   const auto found = study.flatten(to_percent, balloon_mm);
-  if (!found) return found.error();
   const double creep = creep_of(Scenario{});
   Finding finding;
-  finding.value = change_of(found->gland, size);
+  finding.value = change_of(found.gland, size);
   finding.note = fmt::format(
       "A probe of {:g} mm radius, lifted by {:.2f} mm from the middle of the rectum with its end beyond the gland’s "
       "base, flattens the gland by {:.1f} %. It then bears {:.1f} N, or {:.1f} N once the tissue has crept. The gland "
       "is {:+.1f} % wider, {:+.1f} % longer and {:+.1f} % larger. {} The null model, no probe, gives 0 % throughout{}.",
-      10.0 + balloon_mm, found->lift_mm, -found->gland.change_percent.y(), found->force_N.norm(),
-      found->force_N.norm() / creep, found->gland.change_percent.x(), found->gland.change_percent.z(),
-      found->gland.volume_percent, published,
+      10.0 + balloon_mm, found.lift_mm, -found.gland.change_percent.y(), found.force_N.norm(),
+      found.force_N.norm() / creep, found.gland.change_percent.x(), found.gland.change_percent.z(),
+      found.gland.volume_percent, published,
       size == Size::length || balloon_mm > 0.0 ? ""
                                                : ", which is in the accepted range too, since patients differ much");
   finding.why_missed =
       "The tissue is linear, the contact has no friction, and the demo patient is not one of the study’s patients.";
   finding.plot = {.x_label = "lift of the probe [mm]",
                   .y_label = "change of the gland’s extent [%]",
-                  .curves = {found->depth, found->width, found->length}};
+                  .curves = {found.depth, found.width, found.length}};
   return finding;
 }
 

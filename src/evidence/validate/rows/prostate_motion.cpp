@@ -15,14 +15,12 @@ namespace {
 
 using namespace published;
 
-Result<RecordedRun> run_demo(Context& context, const Scenario& scenario) {
-  const auto mesh = context.demo_mesh();
-  if (!mesh) return mesh.error();
+RecordedRun run_demo(Context& context, const Scenario& scenario) {
+  const auto mesh = need(context.demo_mesh());
   Scenario complete = scenario;
   complete.output.frames_per_s = 0.0;
-  const auto model = Model::compile(complete, *mesh, "the demo", {}, context.progress());
-  if (!model) return model.error();
-  return record_run(*model, context.targets(), context.progress());
+  const auto model = need(Model::compile(complete, mesh, "the demo", {}, context.progress()));
+  return need(record_run(model, context.targets(), context.progress()));
 }
 
 /// Results of needles through holes on all sides of the gland, one after the other.
@@ -32,7 +30,7 @@ struct TemplateRun {
   Vec3 largest_mm = Vec3::Zero();  ///< largest displacement of any node of the gland, per axis
 };
 
-Result<TemplateRun> through_template(Context& context) {
+TemplateRun through_template(Context& context) {
   TemplateRun out;
   out.holes = {"c3.5", "e3.5", "c4.5", "e4.5", "D3", "d5"};
   Scenario scenario = measure::demo_scenario();
@@ -45,38 +43,37 @@ Result<TemplateRun> through_template(Context& context) {
   }
   scenario.run.dt_ms = 2.0;
   const auto run = run_demo(context, scenario);
-  if (!run) return run.error();
-  const TetMesh& mesh = run->model->mesh();
-  const std::vector<int>& target = run->model->target_regions();
+  const TetMesh& mesh = run.model->mesh();
+  const std::vector<int>& target = run.model->target_regions();
   std::vector<Index> nodes;
   for (Index t = 0; t < mesh.tet_count(); ++t) {
     const auto k = static_cast<std::size_t>(t);
     if (std::find(target.begin(), target.end(), mesh.tet_region[k]) == target.end()) continue;
     nodes.insert(nodes.end(), mesh.tets[k].begin(), mesh.tets[k].end());
   }
-  for (const Frame& frame : run->events) {
+  for (const Frame& frame : run.events) {
     if (frame.label != "deepest") continue;
     for (const Index node : nodes)
       out.largest_mm = out.largest_mm.cwiseMax(frame.displacement.segment<3>(3 * node).cwiseAbs());
   }
-  for (const TargetShift& shift : run->summary.target_shifts) out.centroid_mm.push_back(shift.centroid_mm);
+  for (const TargetShift& shift : run.summary.target_shifts) out.centroid_mm.push_back(shift.centroid_mm);
   if (out.centroid_mm.size() != out.holes.size())
-    return failure("template", "a needle has no deepest point", "Run the same holes with stylet insert to see why");
+    throw Failed{
+        failure("template", "a needle has no deepest point", "Run the same holes with stylet insert to see why")};
   return out;
 }
 
-Result<Finding> markers(Context& context) {
+Finding markers(Context& context) {
   const auto run = through_template(context);
-  if (!run) return run.error();
   const Vec3 seen(prostate::kMarkerLateral_mm, prostate::kMarkerSagittal_mm, prostate::kMarkerAxial_mm);
   Finding finding;
-  finding.value = run->largest_mm.cwiseQuotient(seen).maxCoeff();
+  finding.value = run.largest_mm.cwiseQuotient(seen).maxCoeff();
   finding.note = fmt::format(
       "The largest displacements in the gland over six needles, one at a time, are {:.2f} mm lateral, {:.2f} mm "
       "sagittal and {:.2f} mm axial. Gold markers were displaced by up to {:g}, {:g} and {:g} mm. This is the lasting "
       "displacement relative to the gland after an implant of many needles and two weeks, not the motion under a "
       "needle. The null model, a rigid gland, gives 0, which is below the accepted range.",
-      run->largest_mm.x(), run->largest_mm.y(), run->largest_mm.z(), seen.x(), seen.y(), seen.z());
+      run.largest_mm.x(), run.largest_mm.y(), run.largest_mm.z(), seen.x(), seen.y(), seen.z());
   return finding;
 }
 

@@ -18,9 +18,7 @@ using namespace published;
 
 /// A block of one tissue with the values that Okamura et al. measured in liver.
 Block liver() {
-  Block block;
-  block.scenario.tissue_model.preset = TissuePreset::linear;
-  block.gland_radius_mm = 0.0;
+  Block block = Block::of_one_tissue(TissuePreset::linear);
   TissueParameters& tissue = block.tissue("body");
   tissue.young_kPa = okamura::modulus_kPa(block.scenario.needle.diameter_mm, tissue.poisson);
   tissue.puncture_N = okamura::kPuncture.mean;
@@ -31,17 +29,9 @@ Block liver() {
   return block;
 }
 
-Curve force_curve(const Drive& drive) {
-  return {.label = "ours",
-          .x = column(drive.steps(), &Step::base_depth_mm),
-          .y = column(drive.steps(), &Step::force_axial_N)};
-}
-
 /// Inserts a needle at 3 mm/s until 8 mm beyond the puncture.
-Result<Drive> puncture_liver() {
-  const auto model = liver().compile();
-  if (!model) return model.error();
-  Drive drive(*model);
+Drive puncture_liver() {
+  Drive drive(need(liver().compile()));
   double stop = 50.0;
   for (double depth = 0.5; depth <= stop; depth += 0.5) {
     drive.go(depth, okamura::kSpeed_mm_per_s, 5e-3);
@@ -50,14 +40,13 @@ Result<Drive> puncture_liver() {
   return drive;
 }
 
-Result<Finding> liver_puncture_drop(Context&) {
+Finding liver_puncture_drop(Context&) {
   const auto drive = puncture_liver();
-  if (!drive) return drive.error();
-  const Event* event = drive->event(EventKind::puncture);
+  const Event* event = drive.event(EventKind::puncture);
   Finding finding;
   if (event == nullptr) return finding;
   double lowest = event->force_N;
-  for (const DriveStep& s : drive->steps())
+  for (const DriveStep& s : drive.steps())
     if (s.record.time_s > event->time_s) lowest = std::min(lowest, s.record.force_axial_N);
   finding.value = event->force_N - lowest;
   finding.note = fmt::format(
@@ -66,14 +55,12 @@ Result<Finding> liver_puncture_drop(Context&) {
   finding.why_missed =
       "The force falls to the cutting force. The study’s puncture force (2.30 N) and cutting force (0.94 N, from other "
       "insertions) differ by more than its mean drop.";
-  finding.plot = {.x_label = "base depth [mm]", .y_label = "axial force [N]", .curves = {force_curve(*drive)}};
+  finding.plot = {.x_label = "base depth [mm]", .y_label = "axial force [N]", .curves = {curve_of(drive, "ours")}};
   return finding;
 }
 
-Result<Finding> gel_force(Context&) {
-  Block block;
-  block.scenario.tissue_model.preset = TissuePreset::linear;
-  block.gland_radius_mm = 0.0;
+Finding gel_force(Context&) {
+  Block block = Block::of_one_tissue(TissuePreset::linear);
   TissueParameters& tissue = block.tissue("body");
   tissue.young_kPa = dimaio::kYoung_kPa;
   tissue.poisson = dimaio::kPoisson;
@@ -82,9 +69,7 @@ Result<Finding> gel_force(Context&) {
   tissue.friction_coulomb_N_per_m = tissue.friction_static_N_per_m = dimaio::kFriction_N_per_m;
   tissue.friction_viscous_Ns_per_m2 = 0.0;
   block.depth_mm = dimaio::kDepth_mm;
-  const auto model = block.compile();
-  if (!model) return model.error();
-  Drive drive(*model);
+  Drive drive(need(block.compile()));
   drive.go(dimaio::kDepth_mm, dimaio::kSpeed_mm_per_s, 20e-3);
   Finding finding;
   finding.value = drive.last().record.force_axial_N;
@@ -95,20 +80,19 @@ Result<Finding> gel_force(Context&) {
   finding.plot = {
       .x_label = "base depth [mm]",
       .y_label = "axial force [N]",
-      .curves = {force_curve(drive),
+      .curves = {curve_of(drive, "ours"),
                  {.label = "measured, approximate", .x = {11, 70}, .y = {0.7, 2.3}, .kind = Curve::Kind::reference}}};
   return finding;
 }
 
 /// The force on the tip in the demo patient with default values.
-Result<Finding> demo_cutting_force(Context& context) {
-  const auto run = context.demo_run();
-  if (!run) return run.error();
+Finding demo_cutting_force(Context& context) {
+  const auto run = need(context.demo_run());
   Finding finding;
-  const auto& regions = (*run)->model->mesh().regions;
+  const auto& regions = run->model->mesh().regions;
   const auto gland = std::find(regions.begin(), regions.end(), "prostate");
-  if (gland == regions.end()) return failure("the demo", "its mesh has no prostate", "Check the demo patient");
-  for (const Frame& frame : (*run)->events) {
+  if (gland == regions.end()) throw Failed{failure("the demo", "its mesh has no prostate", "Check the demo patient")};
+  for (const Frame& frame : run->events) {
     if (frame.label != "deepest") continue;
     for (const ContactView& contact : frame.contacts)
       if (contact.tip) finding.value = contact.force.norm();

@@ -52,10 +52,8 @@ inline constexpr double kTipExcess_N = (68.0 - 34.0) * 5e-3;
 /// Medians over 99 papers. D. J. van Gerwen, J. Dankelman, J. J. van den Dobbelsteen, Needle–tissue interaction forces:
 /// a survey of experimental data, Med. Eng. Phys. 34 (2012) 665–680. Second hand. @cite vanGerwen2012
 namespace vanGerwen {
-inline constexpr double kPeak_N = 5.0;
 inline constexpr double kPuncture_N = 1.22;
 inline constexpr double kCutting_N = 0.95;
-inline constexpr double kFriction_N = 1.0;
 }  // namespace vanGerwen
 
 /// Prostate in vivo and in a phantom.

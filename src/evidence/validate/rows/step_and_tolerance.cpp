@@ -13,22 +13,21 @@ namespace stylet::validate {
 
 namespace {
 
-Result<Finding> force_over_time_steps(Context&) {
-  const auto model = Block().compile();
-  if (!model) return model.error();
+Finding force_over_time_steps(Context&) {
+  const auto model = need(Block().compile());
   std::vector<ForceCurve> forces;
   Finding finding;
   finding.plot = {.x_label = "time [s]", .y_label = "axial force [N]"};
   finding.value = 0.0;
   std::string each;
   for (const double dt : {0.25e-3, 0.5e-3, 1e-3, 2e-3}) {
-    Drive drive(*model);
+    Drive drive(model);
     drive.go(55.0, 20.0, dt);
     drive.wait(0.1, dt);
     drive.go(-1.0, 20.0, dt);
     ForceCurve& force = forces.emplace_back(ForceCurve{.dt_s = dt, .force_N = {}});
     for (const DriveStep& step : drive.steps()) force.force_N.push_back(step.record.force_axial_N);
-    Curve curve{.label = fmt::format("{:g} ms", 1e3 * dt), .x = {}, .y = {}};
+    Curve curve{.label = fmt::format("{:g} ms", 1e3 * dt)};
     const auto every = static_cast<std::size_t>(std::lround(2e-3 / dt));
     for (std::size_t k = every; k <= force.force_N.size(); k += every)
       curve.add(static_cast<double>(k) * dt, force.force_N[k - 1]);
@@ -51,27 +50,22 @@ struct Drag {
   double largest_mm = 0.0;
   unsigned flags = 0;
 };
-Result<Drag> drag(double tolerance, double dt_s) {
-  Block block;
-  block.gland_radius_mm = 0.0;
+Drag drag(double tolerance, double dt_s) {
+  Block block = Block::of_one_tissue();
   block.scenario.coupling.tolerance = tolerance;
-  const auto model = block.compile();
-  if (!model) return model.error();
-  Drive drive(*model);
+  Drive drive(need(block.compile()));
   drive.go(40.0, 20.0, dt_s);
   return Drag{drive.insertion().displacement().cwiseAbs().maxCoeff(), drive.flags()};
 }
 
 /// Measures how the drag depends on a setting. @param over the varied setting, as label of the plot
-Result<Finding> drag_over(const std::string& over, const std::vector<double>& values,
-                          const std::function<Result<Drag>(double)>& measure) {
+Finding drag_over(const std::string& over, const std::vector<double>& values,
+                  const std::function<Drag(double)>& measure) {
   Finding finding;
-  Curve curve{.label = "ours", .x = {}, .y = {}};
+  Curve curve{.label = "ours"};
   for (const double value : values) {
     const auto found = measure(value);
-    if (!found) return found.error();
-    curve.x.push_back(value);
-    curve.y.push_back(found->largest_mm);
+    curve.add(value, found.largest_mm);
   }
   const auto [low, high] = std::minmax_element(curve.y.begin(), curve.y.end());
   finding.value = 100.0 * (*high - *low) / *high;
@@ -84,19 +78,17 @@ Result<Finding> drag_over(const std::string& over, const std::vector<double>& va
   return finding;
 }
 
-Result<Finding> drag_over_tolerance(Context&) {
+Finding drag_over_tolerance(Context&) {
   auto finding = drag_over("tolerance of the solver", {1e-11, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5},
                            [](double tolerance) { return drag(tolerance, 1e-3); });
-  if (finding) {
-    finding->plot.log_y = true;
-    finding->plot.curves.push_back(
-        {.label = "SOFA’s needle plugin", .x = {1e-9, 1e-5}, .y = {72.5, 0.27}, .kind = Curve::Kind::reference});
-    finding->note += " SOFA’s needle plugin gives 0.27 mm at 1e-5 and 72.5 mm at 1e-9 in a case of its own.";
-  }
+  finding.plot.log_y = true;
+  finding.plot.curves.push_back(
+      {.label = "SOFA’s needle plugin", .x = {1e-9, 1e-5}, .y = {72.5, 0.27}, .kind = Curve::Kind::reference});
+  finding.note += " SOFA’s needle plugin gives 0.27 mm at 1e-5 and 72.5 mm at 1e-9 in a case of its own.";
   return finding;
 }
 
-Result<Finding> drag_over_step(Context&) {
+Finding drag_over_step(Context&) {
   return drag_over("time step [ms]", {0.25, 0.5, 1.0, 2.0, 4.0}, [](double ms) { return drag(1e-9, 1e-3 * ms); });
 }
 

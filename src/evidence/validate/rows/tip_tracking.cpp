@@ -30,13 +30,12 @@ struct TipRecording {
 };
 
 /// Reads a recording. @return the recording, sampled every 5 mm of depth
-Result<TipRecording> read(const std::filesystem::path& file) {
-  const auto columns = read_number_table(file, {"Tip x", "Tip y"});
-  if (!columns) return columns.error();
+TipRecording read(const std::filesystem::path& file) {
+  const auto columns = need(read_number_table(file, {"Tip x", "Tip y"}));
   std::vector<std::pair<double, double>> samples;  // depth, lateral
-  for (std::size_t i = 0; i < columns->front().size(); ++i) {
-    const double y = (*columns)[1][i];
-    if (y != 0.0) samples.emplace_back(-y, (*columns)[0][i]);  // exactly 0 marks samples without a reading
+  for (std::size_t i = 0; i < columns.front().size(); ++i) {
+    const double y = columns[1][i];
+    if (y != 0.0) samples.emplace_back(-y, columns[0][i]);  // exactly 0 marks samples without a reading
   }
   std::sort(samples.begin(), samples.end());
   std::vector<double> depth;
@@ -47,7 +46,7 @@ Result<TipRecording> read(const std::filesystem::path& file) {
     lateral.push_back(x);
   }
   if (depth.size() < 10)
-    return input_error(file.string(), "there are fewer than 10 readings", "Use the file as it was published");
+    throw Failed{input_error(file.string(), "there are fewer than 10 readings", "Use the file as it was published")};
   TipRecording out{.name = file.stem().string(), .depth_mm = {}, .lateral_mm = {}};
   const double start = interpolated(depth, lateral, 0.0);
   for (double z = kEvery_mm; z <= kDeepest_mm; z += kEvery_mm) {
@@ -58,20 +57,18 @@ Result<TipRecording> read(const std::filesystem::path& file) {
 }
 
 /// Lateral position of the simulated tip, every 5 mm of depth.
-Result<std::vector<double>> simulate(double bevel_deg) {
-  Block block;
+std::vector<double> simulate(double bevel_deg) {
+  Block block = Block::of_one_tissue();
   block.hi.z() = 125.0;
   block.cells[2] = 10;
-  block.gland_radius_mm = 0.0;
   block.depth_mm = kDeepest_mm;
   block.scenario.needle.bevel_deg = bevel_deg;
-  const auto model = block.compile();
-  if (!model) return model.error();
-  Drive drive(*model, 0.0);
+  const auto model = need(block.compile());
+  Drive drive(model, 0.0);
   std::vector<double> lateral;
   for (double z = kEvery_mm; z <= kDeepest_mm; z += kEvery_mm) {
     drive.go(z, kInsertionSpeed_mm_per_s, 25e-3);
-    lateral.push_back(drive.last().record.tip_mm.x() - (*model)->insertions().front().entry.x());
+    lateral.push_back(drive.last().record.tip_mm.x() - model->insertions().front().entry.x());
   }
   return lateral;
 }
@@ -95,24 +92,23 @@ double rms(const std::vector<double>& lateral, const std::vector<TipRecording>& 
 }
 
 /// Computes the best heading for a bevel angle by least squares.
-Result<Fit> fit_heading(double bevel_deg, const std::vector<TipRecording>& recordings) {
+Fit fit_heading(double bevel_deg, const std::vector<TipRecording>& recordings) {
   auto lateral = simulate(bevel_deg);
-  if (!lateral) return lateral.error();
   double top = 0.0;
   double bottom = 0.0;
   for (const TipRecording& r : recordings) {
-    for (std::size_t i = 0; i < lateral->size(); ++i) {
-      top += r.depth_mm[i] * (r.lateral_mm[i] - (*lateral)[i]);
+    for (std::size_t i = 0; i < lateral.size(); ++i) {
+      top += r.depth_mm[i] * (r.lateral_mm[i] - lateral[i]);
       bottom += r.depth_mm[i] * r.depth_mm[i];
     }
   }
-  Fit fit{.bevel_deg = bevel_deg, .heading = top / bottom, .lateral_mm = std::move(*lateral)};
+  Fit fit{.bevel_deg = bevel_deg, .heading = top / bottom, .lateral_mm = std::move(lateral)};
   for (std::size_t i = 0; i < fit.lateral_mm.size(); ++i) fit.lateral_mm[i] += fit.heading * recordings[0].depth_mm[i];
   fit.rms_mm = rms(fit.lateral_mm, recordings);
   return fit;
 }
 
-Result<Fit> best_fit(const std::vector<TipRecording>& recordings) {
+Fit best_fit(const std::vector<TipRecording>& recordings) {
   Fit best;
   double low = 0.0;
   double high = 40.0;
@@ -120,8 +116,7 @@ Result<Fit> best_fit(const std::vector<TipRecording>& recordings) {
     const double step = (high - low) / 8.0;
     for (int k = 0; k <= 8; ++k) {
       auto fit = fit_heading(low + step * k, recordings);
-      if (!fit) return fit.error();
-      if (fit->rms_mm < best.rms_mm) best = std::move(*fit);
+      if (fit.rms_mm < best.rms_mm) best = std::move(fit);
     }
     low = std::max(0.0, best.bevel_deg - step);
     high = std::min(40.0, best.bevel_deg + step);
@@ -129,39 +124,24 @@ Result<Fit> best_fit(const std::vector<TipRecording>& recordings) {
   return best;
 }
 
-Result<Finding> predict(Context& context) {
-  const auto read_all = [&](const auto& names) -> Result<std::vector<TipRecording>> {
+Finding predict(Context& context) {
+  const auto read_all = [&](const auto& names) {
     std::vector<TipRecording> all;
-    for (const char* name : names) {
-      auto recording = read(*context.data(std::string("needle_tip_tracking/") + name));
-      if (!recording) return recording.error();
-      all.push_back(std::move(*recording));
-    }
+    for (const char* name : names) all.push_back(read(need_file(context, std::string("needle_tip_tracking/") + name)));
     return all;
   };
-  for (const auto& names : {kFitted, kPredicted}) {
-    for (const char* name : names) {
-      const std::string file = std::string("needle_tip_tracking/") + name;
-      if (!context.data(file)) return Finding::skip(context.no_data(file));
-    }
-  }
-  const auto fitted = read_all(kFitted);
-  if (!fitted) return fitted.error();
-  const auto others = read_all(kPredicted);
-  if (!others) return others.error();
-  const auto fit = best_fit(*fitted);
-  if (!fit) return fit.error();
-  const auto straight = fit_heading(0.0, *fitted);
-  if (!straight) return straight.error();
+  const auto fitted = read_all(kFitted), others = read_all(kPredicted);
+  const auto fit = best_fit(fitted);
+  const auto straight = fit_heading(0.0, fitted);
 
   Finding finding;
-  const double unbevelled = rms(straight->lateral_mm, *others);
-  finding.value = rms(fit->lateral_mm, *others);
+  const double unbevelled = rms(straight.lateral_mm, others);
+  finding.value = rms(fit.lateral_mm, others);
   if (finding.value >= unbevelled) finding.value = std::numeric_limits<double>::quiet_NaN();
   std::string ends;
-  for (const TipRecording& r : *others)
+  for (const TipRecording& r : others)
     ends +=
-        fmt::format("{}{:.2f} mm", ends.empty() ? "" : " and ", std::abs(fit->lateral_mm.back() - r.lateral_mm.back()));
+        fmt::format("{}{:.2f} mm", ends.empty() ? "" : " and ", std::abs(fit.lateral_mm.back() - r.lateral_mm.back()));
   finding.note = fmt::format(
       "Fitted to two recordings: a bevel of {:.1f}° (needles are ground to 10° … 30°) and a heading of the guide of "
       "{:.1f}°, with an RMS error of {:.2f} mm. The other two are predicted; the error at 100 mm is {}. There, {:.1f} "
@@ -169,18 +149,18 @@ Result<Finding> predict(Context& context) {
       "with its own best heading, has an RMS error of {:.2f} mm; the value must be smaller. The four recordings agree "
       "within half a millimetre, so the row tests little more than the shape. Needle and tissue have default values, "
       "because the recordings state neither gauge nor material.",
-      fit->bevel_deg, std::atan(fit->heading) * 180.0 / std::numbers::pi, fit->rms_mm, ends, fit->heading * kDeepest_mm,
-      fit->lateral_mm.back() - fit->heading * kDeepest_mm, unbevelled);
+      fit.bevel_deg, std::atan(fit.heading) * 180.0 / std::numbers::pi, fit.rms_mm, ends, fit.heading * kDeepest_mm,
+      fit.lateral_mm.back() - fit.heading * kDeepest_mm, unbevelled);
   finding.why_missed =
       "Gauge, bevel and material of the recordings are not known, and the model has only two fitted values.";
-  Curve model{.label = "fitted", .x = fitted->front().depth_mm, .y = fit->lateral_mm};
+  Curve model{.label = "fitted", .x = fitted.front().depth_mm, .y = fit.lateral_mm};
   finding.plot = {.x_label = "depth [mm]", .y_label = "lateral position of the tip [mm]", .curves = {model}};
-  for (const auto* set : {&*fitted, &*others}) {
+  for (const auto* set : {&fitted, &others}) {
     for (const TipRecording& r : *set) {
-      finding.plot.curves.push_back({.label = r.name + (set == &*fitted ? ", used for the fit" : ", predicted"),
+      finding.plot.curves.push_back({.label = r.name + (set == &fitted ? ", used for the fit" : ", predicted"),
                                      .x = r.depth_mm,
                                      .y = r.lateral_mm,
-                                     .kind = set == &*fitted ? Curve::Kind::points : Curve::Kind::reference});
+                                     .kind = set == &fitted ? Curve::Kind::points : Curve::Kind::reference});
     }
   }
   return finding;

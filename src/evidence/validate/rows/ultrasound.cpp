@@ -33,15 +33,15 @@ struct ImagedBlock {
              .samples = settings.samples,
              .sample_mm = settings.depth_mm / (settings.samples - 1)};
   }
-  [[nodiscard]] Result<UltrasoundScanner> scanner(double attenuation) const {
+  [[nodiscard]] UltrasoundScanner scanner(double attenuation) const {
     const std::vector<TissueEcho> echoes{{0.0, attenuation, ""}};
-    return UltrasoundScanner::create(mesh, echoes, settings, {.anatomy = false, .artefacts = false});
+    return need(UltrasoundScanner::create(mesh, echoes, settings, {.anatomy = false, .artefacts = false}));
   }
 };
 
 constexpr double kEven = UltrasoundScanner::kCompensated_dB_per_cm_MHz;  // speckle keeps its level
 
-Result<Finding> speckle(Context&) {
+Finding speckle(Context&) {
   Finding finding;
   double sum = 0.0;
   constexpr int kSeeds = 4;
@@ -49,13 +49,12 @@ Result<Finding> speckle(Context&) {
     ImagedBlock block;
     block.settings.random = seed;
     auto scanner = block.scanner(kEven);
-    if (!scanner) return scanner.error();
-    scanner->scan(moment_at_rest(block.mesh), block.beams);
+    scanner.scan(moment_at_rest(block.mesh), block.beams);
     double mean = 0.0, square = 0.0;
     int count = 0;
     for (int line = 20; line < 236; ++line) {
       for (int s = 60; s < 520; ++s) {
-        const double amplitude = std::pow(10.0, scanner->level_dB(line, s) / 20.0);
+        const double amplitude = std::pow(10.0, scanner.level_dB(line, s) / 20.0);
         mean += amplitude;
         square += amplitude * amplitude;
         ++count;
@@ -73,14 +72,12 @@ Result<Finding> speckle(Context&) {
   return finding;
 }
 
-Result<Finding> attenuation(Context&) {
+Finding attenuation(Context&) {
   const ImagedBlock block;
   constexpr double kAlpha = 0.95;
   auto weak = block.scanner(kAlpha), even = block.scanner(kEven);
-  if (!weak) return weak.error();
-  if (!even) return even.error();
-  weak->scan(moment_at_rest(block.mesh), block.beams);
-  even->scan(moment_at_rest(block.mesh), block.beams);
+  weak.scan(moment_at_rest(block.mesh), block.beams);
+  even.scan(moment_at_rest(block.mesh), block.beams);
   const auto level = [&](const UltrasoundScanner& scanner, double depth_mm) {
     double power = 0.0;
     const int first = static_cast<int>(depth_mm / block.beams.sample_mm);
@@ -89,11 +86,11 @@ Result<Finding> attenuation(Context&) {
     return 10.0 * std::log10(power);
   };
   Finding finding;
-  Curve ours{.label = "picture", .x = {}, .y = {}};
-  Curve law{.label = "2 α f z", .x = {}, .y = {}, .kind = Curve::Kind::reference};
+  Curve ours{.label = "picture"};
+  Curve law{.label = "2 α f z", .kind = Curve::Kind::reference};
   const double dB_per_cm = 2.0 * (kAlpha - kEven) * block.settings.frequency_MHz;
   for (const double depth : {15.0, 30.0, 45.0, 60.0, 75.0}) {
-    ours.add(depth, level(*even, depth) - level(*weak, depth));
+    ours.add(depth, level(even, depth) - level(weak, depth));
     law.add(depth, dB_per_cm * (depth + 15.0 * block.beams.sample_mm) / 10.0);
   }
   const double slope = (ours.y.back() - ours.y.front()) / 6.0;
@@ -108,25 +105,23 @@ Result<Finding> attenuation(Context&) {
   return finding;
 }
 
-Result<Finding> place(Context&) {
+Finding place(Context&) {
   const ImagedBlock block;
   auto scanner = block.scanner(kEven);
-  if (!scanner) return scanner.error();
   Moment moment = moment_at_rest(block.mesh);
   for (Index node = 0; node < block.mesh.node_count(); ++node) {
     const Vec3& x = block.mesh.nodes[static_cast<std::size_t>(node)];
     moment.displacement.col(node) =
         Vec3(2.0 * std::sin(x.y() / 15.0), 3.0 * std::cos(x.x() / 20.0), 1.5 * std::sin(x.x() / 12.0)).cast<float>();
   }
-  scanner->scan(moment, block.beams);
+  scanner.scan(moment, block.beams);
   const Topology topology(block.mesh);
   const Locator locator(block.mesh, topology);
-  Finding finding;
-  finding.value = 0.0;
+  Finding finding{.value = 0.0};
   constexpr int kBeads = 20;
   for (int k = 0; k < kBeads; ++k) {
     const int line = 30 + 10 * k, sample = 60 + 20 * k;
-    const Vec3 material = scanner->material_mm(line, sample);
+    const Vec3 material = scanner.material_mm(line, sample);
     const auto at = locator.find(material);
     if (!at) continue;
     Vec3 now = material;

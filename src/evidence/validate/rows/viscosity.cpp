@@ -18,31 +18,27 @@ constexpr double kStep_s = 1e-3;
 constexpr double kPressSpeed_mm_per_s = 4.0;
 constexpr double kDent_mm = 4.0;
 
-Result<std::shared_ptr<const Model>> block(double creep, double puncture_N) {
-  Block block;
-  block.scenario.tissue_model.preset = TissuePreset::linear;
-  block.gland_radius_mm = 0.0;
+std::shared_ptr<const Model> block(double creep, double puncture_N) {
+  Block block = Block::of_one_tissue(TissuePreset::linear);
   block.scenario.tissue_model.creep = creep;
   block.scenario.tissue_model.creep_s = kTau_s;
   block.tissue("body").puncture_N = puncture_N;
-  return block.compile();
+  return need(block.compile());
 }
 
-Result<Finding> viscosity(Context&) {
+Finding viscosity(Context&) {
   constexpr double never_N = 20.0;
   constexpr double soon_N = 0.2;
   const auto elastic = block(1.0, never_N);
   const auto viscous = block(kCreep, never_N);
   const auto soft = block(kCreep, soon_N);
-  for (const auto* model : {&elastic, &viscous, &soft})
-    if (!*model) return model->error();
 
   // The tip is pressed in at constant speed and then held.
-  Drive at_rest(*elastic, 0.0);
+  Drive at_rest(elastic, 0.0);
   at_rest.go(kDent_mm, kPressSpeed_mm_per_s, kStep_s);
   const double held_N = at_rest.last().record.force_axial_N;
   const double stiffness = held_N / kDent_mm;
-  Drive pressing(*viscous, 0.0);
+  Drive pressing(viscous, 0.0);
   pressing.go(kDent_mm, kPressSpeed_mm_per_s, kStep_s);
   pressing.wait(kTau_s, kStep_s);
   const double moving_s = kDent_mm / kPressSpeed_mm_per_s;
@@ -60,8 +56,8 @@ Result<Finding> viscosity(Context&) {
     return time < moving_s ? then : at_last + (then - at_last) * std::exp(-rate * (time - moving_s));
   };
   double press_off = 0.0;
-  Curve force{.label = "force / force of elastic tissue", .x = {}, .y = {}};
-  Curve force_law{.label = "standard linear solid", .x = {}, .y = {}, .kind = Curve::Kind::reference};
+  Curve force{.label = "force / force of elastic tissue"};
+  Curve force_law{.label = "standard linear solid", .kind = Curve::Kind::reference};
   for (std::size_t i = 0; i < pressing.steps().size(); ++i) {
     const double time = kStep_s * static_cast<double>(i + 1);
     const double dent = std::min(kDent_mm, kPressSpeed_mm_per_s * time);
@@ -73,7 +69,7 @@ Result<Finding> viscosity(Context&) {
   }
 
   // The needle goes in and out, and the tissue relaxes.
-  Drive drive(*soft);
+  Drive drive(soft);
   drive.go(30.0, 20.0, kStep_s);
   drive.go(-2.0, 40.0, kStep_s);
   const VecX first = drive.insertion().displacement();

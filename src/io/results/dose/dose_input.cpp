@@ -51,6 +51,14 @@ DoseInput dose_input(const std::string& role, const fs::path& path) {
   return {.role = role, .path = path.string(), .sha256 = folder ? sha256_of_folder(path) : sha256_of_file(path)};
 }
 
+std::vector<DoseInput> dose_inputs(const std::vector<std::pair<std::string, std::string>>& files) {
+  std::vector<DoseInput> inputs;
+  std::error_code code;
+  for (const auto& [role, path] : files)
+    if (!path.empty() && fs::exists(path, code)) inputs.push_back(dose_input(role, path));
+  return inputs;
+}
+
 std::string date_and_time() {
   const std::time_t now = std::time(nullptr);
   std::tm local{};

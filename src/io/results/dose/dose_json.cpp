@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dose/goal_text.hpp"
+#include "record/json.hpp"
 #include "stylet/core/version.hpp"
 #include "stylet/io/dose_results.hpp"
-
-#include <nlohmann/json.hpp>
 
 namespace stylet {
 namespace {
 
-using OrderedJson = nlohmann::ordered_json;
+using record::Json, record::list_of, record::or_null;
 
-OrderedJson vector_list(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-
-OrderedJson dvh_row(const StructureDose& structure, double prescription_Gy) {
+Json dvh_row(const StructureDose& structure, double prescription_Gy) {
   const DoseVolume& dvh = structure.dvh;
   const auto percent_of = [&](double times) {
-    return prescription_Gy > 0.0 ? OrderedJson(dvh.percent_above(times * prescription_Gy)) : OrderedJson(nullptr);
+    return prescription_Gy > 0.0 ? Json(dvh.percent_above(times * prescription_Gy)) : Json(nullptr);
   };
   return {{"structure", structure.name},
           {"region", structure.region},
@@ -31,25 +28,25 @@ OrderedJson dvh_row(const StructureDose& structure, double prescription_Gy) {
           {"V100_percent", percent_of(1.0)},
           {"V150_percent", percent_of(1.5)},
           {"V200_percent", percent_of(2.0)},
-          {"V100_cc", prescription_Gy > 0.0 ? OrderedJson(dvh.volume_above_cc(prescription_Gy)) : OrderedJson(nullptr)},
+          {"V100_cc", prescription_Gy > 0.0 ? Json(dvh.volume_above_cc(prescription_Gy)) : Json(nullptr)},
           {"mean_Gy", dvh.mean_Gy()},
           {"covered_by_grid_percent", structure.covered_by_grid_percent}};
 }
 
-OrderedJson goal_row(const JudgedGoal& judged) {
+Json goal_row(const JudgedGoal& judged) {
   return {{"structure", judged.goal.structure},
           {"metric", judged.goal.metric},
           {"bound", results::bound_text(judged.goal)},
-          {"value", judged.value ? OrderedJson(*judged.value) : OrderedJson(nullptr)},
-          {"met", judged.value ? OrderedJson(judged.met) : OrderedJson(nullptr)},
+          {"value", or_null(judged.value)},
+          {"met", judged.value ? Json(judged.met) : Json(nullptr)},
           {"citation", judged.goal.citation}};
 }
 
-OrderedJson point_row(const Vec3& x, double dose_Gy) {
+Json point_row(const Vec3& x, double dose_Gy) {
   return {{"x_mm", x.x()}, {"y_mm", x.y()}, {"z_mm", x.z()}, {"dose_Gy", dose_Gy}};
 }
 
-OrderedJson gamma_json(const GammaRates& gamma) {
+Json gamma_json(const GammaRates& gamma) {
   return {{"dose_percent", gamma.criteria.dose_percent},
           {"distance_mm", gamma.criteria.distance_mm},
           {"threshold_percent", gamma.criteria.threshold_percent},
@@ -59,65 +56,52 @@ OrderedJson gamma_json(const GammaRates& gamma) {
           {"global_pass_percent", gamma.global_percent}};
 }
 
-OrderedJson comparison_json(const std::optional<DoseComparison>& comparison) {
+Json comparison_json(const std::optional<DoseComparison>& comparison) {
   if (!comparison) return nullptr;
   return {{"median_ratio", comparison->median_ratio},
           {"p1", comparison->p1},
           {"p99", comparison->p99},
           {"points", comparison->points},
           {"file", comparison->file},
-          {"gamma", comparison->gamma ? gamma_json(*comparison->gamma) : OrderedJson(nullptr)}};
+          {"gamma", comparison->gamma ? gamma_json(*comparison->gamma) : Json(nullptr)}};
 }
 
-/// A text, or null where it is empty.
-OrderedJson text_or_null(const std::string& text) { return text.empty() ? OrderedJson(nullptr) : OrderedJson(text); }
-
-OrderedJson number_or_null(const std::optional<double>& number) {
-  return number ? OrderedJson(*number) : OrderedJson(nullptr);
-}
-
-OrderedJson strength_json(const StrengthAge& age) {
-  return {{"date", text_or_null(age.strength_date)},
-          {"plan_date", text_or_null(age.plan_date)},
-          {"days_between", number_or_null(age.days)},
-          {"decay_factor_between", number_or_null(age.factor_between)},
+Json strength_json(const StrengthAge& age) {
+  return {{"date", or_null(age.strength_date)},
+          {"plan_date", or_null(age.plan_date)},
+          {"days_between", or_null(age.days)},
+          {"decay_factor_between", or_null(age.factor_between)},
           {"decay_factor_used", age.factor_used}};
 }
 
-OrderedJson patient_json(const PatientRecord& p) {
-  return {{"id", text_or_null(p.id)},
-          {"name", text_or_null(p.name)},
-          {"birth_date", text_or_null(p.birth_date)},
-          {"sex", text_or_null(p.sex)},
-          {"study_uid", text_or_null(p.study_uid)},
-          {"study_date", text_or_null(p.study_date)},
-          {"accession_number", text_or_null(p.accession_number)},
-          {"frame_of_reference", text_or_null(p.frame_of_reference)},
-          {"structure_set", text_or_null(p.structure_set)},
-          {"from", text_or_null(p.file)}};
+Json patient_json(const PatientRecord& p) {
+  return {{"id", or_null(p.id)},
+          {"name", or_null(p.name)},
+          {"birth_date", or_null(p.birth_date)},
+          {"sex", or_null(p.sex)},
+          {"study_uid", or_null(p.study_uid)},
+          {"study_date", or_null(p.study_date)},
+          {"accession_number", or_null(p.accession_number)},
+          {"frame_of_reference", or_null(p.frame_of_reference)},
+          {"structure_set", or_null(p.structure_set)},
+          {"from", or_null(p.file)}};
 }
 
-OrderedJson seed_row(const DoseEvaluation& evaluation, const PlannedSource& seed) {
-  OrderedJson row = {{"position_mm", vector_list(seed.at_mm)},
-                     {"axis", vector_list(seed.axis)},
-                     {"strength_U", seed.strength_U},
-                     {"needle", seed.needle},
-                     {"dwell_s", seed.dwell_s}};
+Json seed_row(const DoseEvaluation& evaluation, const PlannedSource& seed) {
+  Json row = {{"position_mm", list_of(seed.at_mm)},
+              {"axis", list_of(seed.axis)},
+              {"strength_U", seed.strength_U},
+              {"needle", seed.needle},
+              {"dwell_s", seed.dwell_s}};
   if (!evaluation.more_sources.empty())
     row["source"] = seed.kind == 0 ? evaluation.source.name : evaluation.more_sources.at(seed.kind - 1).name;
   return row;
 }
 
-}  // namespace
-
-namespace {
-
-OrderedJson inputs_json(const std::vector<DoseInput>& inputs) {
-  OrderedJson list = OrderedJson::array();
+Json inputs_json(const std::vector<DoseInput>& inputs) {
+  Json list = Json::array();
   for (const DoseInput& input : inputs) {
-    list.push_back({{"role", input.role},
-                    {"file", input.path},
-                    {"sha256", input.sha256.empty() ? OrderedJson(nullptr) : OrderedJson(input.sha256)}});
+    list.push_back({{"role", input.role}, {"file", input.path}, {"sha256", or_null(input.sha256)}});
   }
   return list;
 }
@@ -125,27 +109,25 @@ OrderedJson inputs_json(const std::vector<DoseInput>& inputs) {
 }  // namespace
 
 std::string dose_json(const DoseEvaluation& evaluation) {
-  OrderedJson dvh = OrderedJson::array(), goals = OrderedJson::array(), points = OrderedJson::array(),
-              seeds = OrderedJson::array();
+  Json dvh = Json::array(), goals = Json::array(), points = Json::array(), seeds = Json::array();
   for (const StructureDose& s : evaluation.structures) dvh.push_back(dvh_row(s, evaluation.prescription_Gy));
   for (const JudgedGoal& goal : evaluation.goals) goals.push_back(goal_row(goal));
   for (std::size_t k = 0; k < evaluation.points.size() && k < evaluation.point_Gy.size(); ++k)
     points.push_back(point_row(evaluation.points[k], evaluation.point_Gy[k]));
   for (const PlannedSource& seed : evaluation.plan.sources) seeds.push_back(seed_row(evaluation, seed));
-  OrderedJson sources = {evaluation.source.name};
+  Json sources = {evaluation.source.name};
   for (const SourceModel& model : evaluation.more_sources) sources.push_back(model.name);
-  const OrderedJson json = {
+  const Json json = {
       {"seeds", evaluation.plan.sources.size()},
       {"source", evaluation.source.name},
       {"sources", sources},
       {"formalism", to_string(evaluation.formalism)},
-      {"prescription_Gy",
-       evaluation.prescription_Gy > 0.0 ? OrderedJson(evaluation.prescription_Gy) : OrderedJson(nullptr)},
+      {"prescription_Gy", or_null(evaluation.prescription_Gy)},
       {"quantity", evaluation.quantity},
       {"implant", to_string(evaluation.plan.implant)},
       {"patient", patient_json(evaluation.patient)},
       {"strength", strength_json(evaluation.strength)},
-      {"computed_on", evaluation.computed_on.empty() ? OrderedJson(nullptr) : OrderedJson(evaluation.computed_on)},
+      {"computed_on", or_null(evaluation.computed_on)},
       {"program", std::string("Stylet ") + version()},
       {"inputs", inputs_json(evaluation.inputs)},
       {"dvh", dvh},
@@ -157,7 +139,7 @@ std::string dose_json(const DoseEvaluation& evaluation) {
       {"assumptions", evaluation.assumptions},
       {"warnings", evaluation.warnings},
   };
-  return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
+  return record::pretty(json);
 }
 
 }  // namespace stylet

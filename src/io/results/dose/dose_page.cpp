@@ -8,7 +8,6 @@
 #include "dose/page_shell.hpp"
 #include "dose/page_tables.hpp"
 #include "dose/structure_look.hpp"
-#include "report/assets.hpp"
 #include "report/html_parts.hpp"
 #include "report/text.hpp"
 
@@ -18,12 +17,12 @@ Result<std::string> dose_page(const DoseEvaluation& evaluation) {
   const std::vector<std::string> colours = structure_colours(evaluation.structures);
   const DvhTable dvh = dvh_table(evaluation);
   const Slots slots{
-      {"report", "dose report"},
       {"kicker", "Dose of a brachytherapy plan"},
       {"kind", "computation"},
-      {"title", html_escaped(plan_name(evaluation.plan))},
+      {"title", html_escaped(plan_name(evaluation.plan)) + " – dose report"},
+      {"heading", html_escaped(plan_name(evaluation.plan))},
       {"facts", html_prose(plan_line(evaluation))},
-      {"css", std::string(dose_css()) + printed_margins(evaluation)},
+      {"more_css", printed_margins(evaluation)},
       {"record", record_of(evaluation)},
       {"warnings", box_of_warnings(evaluation.warnings)},
       {"tiles", dose_tiles(evaluation)},
@@ -38,10 +37,8 @@ Result<std::string> dose_page(const DoseEvaluation& evaluation) {
                                               : "<h3>What the reader of the plan decided</h3><ul>" +
                                                     sentence_list(evaluation.plan.notes) + "</ul>"},
       {"data", json_script_safe(dose_page_data(evaluation, dvh, colours))},
-      {"more_data", std::string()},
-      {"js", script_safe(dose_js())},
   };
-  return page_about_dose(dose_template(), slots);
+  return page_about_dose(dose_assets(), slots);
 }
 
 }  // namespace stylet::results

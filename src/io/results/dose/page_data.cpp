@@ -5,9 +5,8 @@
 #include "dose/dose_view.hpp"
 #include "dose/structure_look.hpp"
 #include "dose/structure_mask.hpp"
+#include "record/json.hpp"
 #include "report/text.hpp"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -18,7 +17,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "typed arrays in the page are little-endian");
 
-using PageJson = nlohmann::ordered_json;
+using record::Json;
 
 // Upper bounds of what the page holds, over all structures.
 constexpr double kMostCubes = 1.4e6;       // one byte each
@@ -27,14 +26,12 @@ constexpr double kMostDosePoints = 7e5;    // two bytes each
 constexpr std::size_t kMostCloud = 40000;  // twelve bytes each
 constexpr double kMostCorners = 1e5;       // twelve bytes each
 
-PageJson three(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-
 double two_decimals(double value) { return std::round(100.0 * value) / 100.0; }
 
-PageJson dvh_json(const DvhTable& dvh) {
-  PageJson percent = PageJson::array();
+Json dvh_json(const DvhTable& dvh) {
+  Json percent = Json::array();
   for (const std::vector<double>& curve : dvh.percent) {
-    PageJson values = PageJson::array();
+    Json values = Json::array();
     for (const double value : curve) values.push_back(two_decimals(value));
     percent.push_back(std::move(values));
   }
@@ -42,7 +39,7 @@ PageJson dvh_json(const DvhTable& dvh) {
 }
 
 /// Every point, or every second, third, …, so that there are at most so many.
-PageJson points_text(const std::vector<Vec3>& points, std::size_t most) {
+Json points_text(const std::vector<Vec3>& points, std::size_t most) {
   std::vector<float> values;
   const std::size_t every = most == 0 ? 1 : (points.size() + most - 1) / most;
   for (std::size_t k = 0; k < points.size(); k += std::max<std::size_t>(every, 1)) {
@@ -51,24 +48,24 @@ PageJson points_text(const std::vector<Vec3>& points, std::size_t most) {
   return base64_of<float>(values);
 }
 
-PageJson mask_json(const StructureMask& mask) {
+Json mask_json(const StructureMask& mask) {
   return {{"size", mask.size},
-          {"origin_mm", three(mask.origin_mm)},
+          {"origin_mm", record::list_of(mask.origin_mm)},
           {"spacing_mm", mask.spacing_mm},
           {"share", base64_of<std::uint8_t>(mask.share)}};
 }
 
-PageJson structure_surface_json(const StructureSurface& surface) {
+Json structure_surface_json(const StructureSurface& surface) {
   return {{"points_mm", base64_of<float>(surface.points_mm)},
           {"triangles", base64_of<std::uint32_t>(surface.triangles)}};
 }
 
 /// The contours themselves, for the sections that lie in their planes.
-PageJson contours_json(const StructureDose& structure, double share) {
+Json contours_json(const StructureDose& structure, double share) {
   std::size_t corners = 0;
   for (const Contour& contour : structure.contours) corners += contour.points.size();
   const auto every = static_cast<std::size_t>(1.0 + static_cast<double>(corners) / (share * kMostCorners));
-  PageJson list = PageJson::array();
+  Json list = Json::array();
   for (const Contour& contour : structure.contours) {
     if (contour.points.size() < 3) continue;
     std::vector<Vec3> points;  // a contour with few corners keeps all of them
@@ -79,21 +76,20 @@ PageJson contours_json(const StructureDose& structure, double share) {
   return list;
 }
 
-PageJson difference_json(const DoseEvaluation& evaluation, const DoseView& view,
-                         const std::vector<IsodoseLevel>& levels) {
+Json difference_json(const DoseEvaluation& evaluation, const DoseView& view, const std::vector<IsodoseLevel>& levels) {
   if (!evaluation.comparison || evaluation.comparison->difference.dose_Gy.empty() || levels.empty()) return nullptr;
   const double limit_Gy = 0.2 * levels.front().dose_Gy;  // a tenth of the dose of the second line
   const ViewedDifference seen =
       viewed_difference(evaluation.comparison->difference, view, limit_Gy, 0.5 * kMostDosePoints);
   return {{"size", seen.size},
-          {"origin_mm", three(seen.origin_mm)},
+          {"origin_mm", record::list_of(seen.origin_mm)},
           {"spacing_mm", seen.spacing_mm},
           {"limit_Gy", seen.limit_Gy},
           {"values", base64_of<std::uint8_t>(seen.value)}};
 }
 
-PageJson structures_json(const DoseEvaluation& evaluation, const std::vector<std::string>& colours) {
-  PageJson list = PageJson::array();
+Json structures_json(const DoseEvaluation& evaluation, const std::vector<std::string>& colours) {
+  Json list = Json::array();
   const double share = 1.0 / std::max(4.0, static_cast<double>(evaluation.structures.size()));
   for (std::size_t k = 0; k < evaluation.structures.size(); ++k) {
     const StructureDose& structure = evaluation.structures[k];
@@ -104,34 +100,34 @@ PageJson structures_json(const DoseEvaluation& evaluation, const std::vector<std
          {"region", structure.region},
          {"color", colours[k]},
          {"background", surrounds_others(structure)},
-         {"mask", mask ? mask_json(*mask) : PageJson(nullptr)},
-         {"surface", mask ? structure_surface_json(mask_surface(*mask, share * kMostTriangles)) : PageJson(nullptr)},
+         {"mask", mask ? mask_json(*mask) : Json(nullptr)},
+         {"surface", mask ? structure_surface_json(mask_surface(*mask, share * kMostTriangles)) : Json(nullptr)},
          {"contours_mm", contours_json(structure, share)},
-         {"cloud_mm", mask ? PageJson("") : points_text(structure.cloud, most_cloud)}});
+         {"cloud_mm", mask ? Json("") : points_text(structure.cloud, most_cloud)}});
   }
   return list;
 }
 
-PageJson levels_json(const std::vector<IsodoseLevel>& levels) {
-  PageJson list = PageJson::array();
+Json levels_json(const std::vector<IsodoseLevel>& levels) {
+  Json list = Json::array();
   for (const IsodoseLevel& level : levels) {
     list.push_back({{"dose_Gy", level.dose_Gy}, {"label", level.label}, {"color", level.colour}, {"main", level.main}});
   }
   return list;
 }
 
-PageJson dose_grid_json(const ViewedDose& dose) {
+Json dose_grid_json(const ViewedDose& dose) {
   return {{"size", dose.size},
-          {"origin_mm", three(dose.origin_mm)},
+          {"origin_mm", record::list_of(dose.origin_mm)},
           {"spacing_mm", dose.spacing_mm},
           {"scale_Gy", dose.scale_Gy},
           {"ceiling_Gy", dose.ceiling_Gy},
           {"values", base64_of<std::uint16_t>(dose.value)}};
 }
 
-PageJson sources_json(const DoseEvaluation& evaluation) {
+Json sources_json(const DoseEvaluation& evaluation) {
   std::vector<Vec3> places, axes;
-  PageJson needles = PageJson::array(), dwells = PageJson::array();
+  Json needles = Json::array(), dwells = Json::array();
   for (const PlannedSource& source : evaluation.plan.sources) {
     places.push_back(source.at_mm);
     axes.push_back(source.axis);
@@ -154,10 +150,10 @@ std::string dose_page_data(const DoseEvaluation& evaluation, const DvhTable& dvh
   const DoseView view = dose_view(evaluation);
   const std::vector<IsodoseLevel> levels = isodose_levels(evaluation);
   const double ceiling = levels.empty() ? 0.0 : 2.5 * levels.back().dose_Gy;
-  const PageJson json = {
-      {"prescription_Gy", evaluation.prescription_Gy > 0.0 ? PageJson(evaluation.prescription_Gy) : PageJson(nullptr)},
+  const Json json = {
+      {"prescription_Gy", record::or_null(evaluation.prescription_Gy)},
       {"dvh", dvh_json(dvh)},
-      {"centre_mm", three(view.centre_mm)},
+      {"centre_mm", record::list_of(view.centre_mm)},
       {"half_mm", view.half_mm},
       {"levels", levels_json(levels)},
       {"dose", dose_grid_json(viewed_dose(evaluation.grid, view, ceiling, kMostDosePoints))},
@@ -165,7 +161,7 @@ std::string dose_page_data(const DoseEvaluation& evaluation, const DvhTable& dvh
       {"structures", structures_json(evaluation, colours)},
       {"sources", sources_json(evaluation)},
   };
-  return json.dump(-1, ' ', false, PageJson::error_handler_t::replace);
+  return record::compact(json);
 }
 
 }  // namespace stylet::results

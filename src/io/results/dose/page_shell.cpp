@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dose/page_shell.hpp"
 
-#include "report/assets.hpp"
 #include "report/html_parts.hpp"
-#include "report/text.hpp"
-#include "stylet/core/version.hpp"
-
-#include <fmt/format.h>
 
 namespace stylet::results {
 
@@ -19,19 +14,18 @@ constexpr const char* kDvhPlot =
 constexpr const char* kSectionPictures =
     "<div class=\"needs-script\"><div class=\"iso-key\" id=\"iso-key\"></div><div class=\"sections\" "
     "id=\"section-pictures\"></div></div>";
+constexpr const char* kSign =
+    "<dl class=\"sign\"><div><dt>Checked by</dt><dd></dd></div><div><dt>Date</dt><dd></dd></div><div><dt>Signature</dt>"
+    "<dd></dd></div></dl>";
 
 }  // namespace
 
-Result<std::string> page_about_dose(std::string_view body, Slots slots) {
-  constexpr const char* kName = "report.html";
+Result<std::string> page_about_dose(const PageAssets& page, Slots slots) {
   slots["dvh_plot"] = kDvhPlot + chart_note(slots["dvh_file"]);
   slots["section_pictures"] = kSectionPictures;
-  Result<std::string> filled = fill_page(body, slots, kName);
-  if (!filled) return filled;
-  slots["body"] = *std::move(filled);
-  slots["version"] = html_escaped(version());
-  slots["versions"] = html_escaped(fmt::format("Stylet {}", version()));
-  return fill_page(dose_shell(), slots, kName);
+  slots["sign"] = kSign;
+  slots["data_id"] = "dose-data";
+  return whole_page(page, std::move(slots), "report.html");
 }
 
 }  // namespace stylet::results

@@ -10,12 +10,8 @@
 namespace stylet::results {
 namespace {
 
-OrderedJson number_or_null(const std::optional<double>& value) {
-  return value ? OrderedJson(*value) : OrderedJson(nullptr);
-}
-
-OrderedJson found_errors_json(const FoundErrors& errors) {
-  OrderedJson parts = OrderedJson::array();
+Json found_errors_json(const FoundErrors& errors) {
+  Json parts = Json::array();
   for (const ErrorPart& part : errors.parts)
     parts.push_back({{"cause", part.name}, {"mm2", part.mean_mm2}, {"percent", part.percent}});
   return {{"error", errors_json(errors.error)},
@@ -26,15 +22,15 @@ OrderedJson found_errors_json(const FoundErrors& errors) {
 
 }  // namespace
 
-OrderedJson agreement_json(const Agreement& agreement) {
-  return {{"correlation", number_or_null(agreement.correlation)},
-          {"explained_percent", number_or_null(agreement.explained_percent)}};
+Json agreement_json(const Agreement& agreement) {
+  return {{"correlation", record::or_null(agreement.correlation)},
+          {"explained_percent", record::or_null(agreement.explained_percent)}};
 }
 
-OrderedJson found_json(const ImplantHistory& history, const FoundImplant& found) {
+Json found_json(const ImplantHistory& history, const FoundImplant& found) {
   const FoundComparison& comparison = found.comparison;
   const SeedMatching& matching = comparison.matching;
-  OrderedJson seeds = OrderedJson::array(), not_found = OrderedJson::array(), extra = OrderedJson::array();
+  Json seeds = Json::array(), not_found = Json::array(), extra = Json::array();
   for (const MatchedSeed& matched : comparison.seeds)
     seeds.push_back(record::json_of(shown_found(matched.seed, &matched, history, comparison)));
   for (const std::size_t k : matching.not_found) not_found.push_back(history.seeds[k].number + 1);
@@ -42,7 +38,7 @@ OrderedJson found_json(const ImplantHistory& history, const FoundImplant& found)
     const FoundSeed& seed = found.seeds.seeds[k];
     extra.push_back({{"found_number", k + 1}, {"found_mm", list_of(seed.at_mm)}, {"where", seed.where}});
   }
-  const OrderedJson dose = OrderedJson::parse(dose_json(found.dose_without_shift));
+  const Json dose = Json::parse(dose_json(found.dose_without_shift));
   return {{"file", found.seeds.file},
           {"found", found.seeds.seeds.size()},
           {"matched", comparison.seeds.size()},
@@ -63,7 +59,7 @@ OrderedJson found_json(const ImplantHistory& history, const FoundImplant& found)
             {"y", agreement_json(comparison.axes[1])},
             {"z", agreement_json(comparison.axes[2])},
             {"all", agreement_json(comparison.all)},
-            {"correlation_by_chance", number_or_null(comparison.correlation_by_chance)}}},
+            {"correlation_by_chance", record::or_null(comparison.correlation_by_chance)}}},
           {"seeds", seeds},
           {"dvh_without_shift", dose["dvh"]},
           {"goals_without_shift", dose["goals"]}};

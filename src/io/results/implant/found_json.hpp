@@ -7,9 +7,9 @@
 namespace stylet::results {
 
 /// `implant.found` of summary.json (docs/results.md). @param history the simulated implant
-OrderedJson found_json(const ImplantHistory& history, const FoundImplant& found);
+Json found_json(const ImplantHistory& history, const FoundImplant& found);
 
 /// Correlation and explained variance of simulated and found errors; null where there are none.
-OrderedJson agreement_json(const Agreement& agreement);
+Json agreement_json(const Agreement& agreement);
 
 }  // namespace stylet::results

@@ -14,29 +14,25 @@
 namespace stylet {
 namespace {
 
+using record::Json;
 using results::errors_json;
 using results::list_of;
-using results::OrderedJson;
 
-OrderedJson parts_json(const std::vector<PartErrors>& parts) {
-  OrderedJson rows = OrderedJson::array();
+Json parts_json(const std::vector<PartErrors>& parts) {
+  Json rows = Json::array();
   for (const PartErrors& part : parts) {
-    OrderedJson row{{"name", part.name}};
+    Json row{{"name", part.name}};
     row.update(errors_json(part.errors));
     rows.push_back(row);
   }
   return rows;
 }
 
-OrderedJson shift_json(const std::optional<Vec3>& shift_mm) {
-  return shift_mm ? list_of(*shift_mm) : OrderedJson(nullptr);
-}
-
 /// The goals of the plan beside those of the implant. @param found those of the found seeds; null: none are given
-OrderedJson goals_json(const OrderedJson& planned, const OrderedJson& delivered, const OrderedJson& found) {
-  OrderedJson rows = OrderedJson::array();
+Json goals_json(const Json& planned, const Json& delivered, const Json& found) {
+  Json rows = Json::array();
   for (std::size_t k = 0; k < delivered.size(); ++k) {
-    OrderedJson row = delivered[k];
+    Json row = delivered[k];
     row["planned_value"] = planned[k]["value"];
     row["planned_met"] = planned[k]["met"];
     if (!found.is_null()) {
@@ -48,14 +44,14 @@ OrderedJson goals_json(const OrderedJson& planned, const OrderedJson& delivered,
   return rows;
 }
 
-OrderedJson dose_of(const DoseEvaluation& evaluation) {
-  const OrderedJson dose = OrderedJson::parse(dose_json(evaluation));
+Json dose_of(const DoseEvaluation& evaluation) {
+  const Json dose = Json::parse(dose_json(evaluation));
   return {{"delivered_dvh", dose["dvh"]}, {"goals", dose["goals"]}};
 }
 
 /// @param found the seeds found on images, where there are any
-OrderedJson other_json(const OtherImplant& other, const std::optional<FoundImplant>& found) {
-  OrderedJson json = {{"name", other.name}, {"error", errors_json(seed_errors(other.history.seeds))}};
+Json other_json(const OtherImplant& other, const std::optional<FoundImplant>& found) {
+  Json json = {{"name", other.name}, {"error", errors_json(seed_errors(other.history.seeds))}};
   json.update(dose_of(other.delivered));
   if (found) json["agreement"] = results::agreement_json(compare_found(other.history, found->seeds.seeds).all);
   return json;
@@ -65,9 +61,9 @@ OrderedJson other_json(const OtherImplant& other, const std::optional<FoundImpla
 
 std::string implant_json(const ImplantOutcome& outcome) {
   const ImplantHistory& history = outcome.history;
-  const OrderedJson planned = OrderedJson::parse(dose_json(outcome.planned));
-  const OrderedJson delivered = OrderedJson::parse(dose_json(outcome.delivered));
-  OrderedJson seeds = OrderedJson::array(), needles = OrderedJson::array(), why = OrderedJson::array();
+  const Json planned = Json::parse(dose_json(outcome.planned));
+  const Json delivered = Json::parse(dose_json(outcome.delivered));
+  Json seeds = Json::array(), needles = Json::array(), why = Json::array();
   const bool temporary = implant_of(history.seeds) == Implant::temporary;
   for (const SeedHistory& seed : history.seeds) seeds.push_back(record::json_of(results::shown_seed(seed, outcome)));
   for (const NeedleHistory& needle : history.needles) needles.push_back(record::json_of(needle));
@@ -76,10 +72,10 @@ std::string implant_json(const ImplantOutcome& outcome) {
                    {"mean_mm", cause.mean_mm},
                    {"mean_xyz_mm", list_of(cause.mean_vector_mm)}});
   }
-  OrderedJson spans = OrderedJson::array();
+  Json spans = Json::array();
   for (const OtherImplant& other : outcome.spans) spans.push_back(other_json(other, outcome.found));
-  const OrderedJson found = outcome.found ? OrderedJson::parse(dose_json(outcome.found->dose)) : OrderedJson(nullptr);
-  OrderedJson implant = {
+  const Json found = outcome.found ? Json::parse(dose_json(outcome.found->dose)) : Json(nullptr);
+  Json implant = {
       {"source", outcome.delivered.source.name},
       {"prescription_Gy", delivered["prescription_Gy"]},
       {temporary ? "dwell_positions" : "seeds", seeds},
@@ -90,28 +86,29 @@ std::string implant_json(const ImplantOutcome& outcome) {
       {"why", why},
       {"planned_dvh", planned["dvh"]},
       {"delivered_dvh", delivered["dvh"]},
-      {"found_dvh", outcome.found ? found["dvh"] : OrderedJson(nullptr)},
-      {"goals",
-       goals_json(planned["goals"], delivered["goals"], outcome.found ? found["goals"] : OrderedJson(nullptr))},
-      {"oedema", outcome.oedema ? results::oedema_json(*outcome.oedema) : OrderedJson(nullptr)},
-      {"found", outcome.found ? results::found_json(history, *outcome.found) : OrderedJson(nullptr)},
-      {"before_compensation", outcome.before ? other_json(*outcome.before, outcome.found) : OrderedJson(nullptr)},
+      {"found_dvh", outcome.found ? found["dvh"] : Json(nullptr)},
+      {"goals", goals_json(planned["goals"], delivered["goals"], outcome.found ? found["goals"] : Json(nullptr))},
+      {"oedema", outcome.oedema ? results::oedema_json(*outcome.oedema) : Json(nullptr)},
+      {"found", outcome.found ? results::found_json(history, *outcome.found) : Json(nullptr)},
+      {"before_compensation", outcome.before ? other_json(*outcome.before, outcome.found) : Json(nullptr)},
       {"spans", spans},
-      {"probe", outcome.probe ? results::probe_json(*outcome.probe) : OrderedJson(nullptr)},
-      {"probe_out", outcome.probe_out ? dose_of(*outcome.probe_out) : OrderedJson(nullptr)},
+      {"probe", outcome.probe ? results::probe_json(*outcome.probe) : Json(nullptr)},
+      {"probe_out", outcome.probe_out ? dose_of(*outcome.probe_out) : Json(nullptr)},
       {"assumptions", delivered["assumptions"]}};
   if (temporary) {
     implant["planning_to_delivery_s"] = outcome.scenario.procedure.planning_to_delivery_s;
-    implant["gland_at_planning_mm"] = shift_json(history.gland_at_planning_mm);
-    implant["gland_at_delivery_mm"] = shift_json(history.gland_at_delivery_mm);
-    implant["at_planning"] = outcome.at_planning ? other_json(*outcome.at_planning, {}) : OrderedJson(nullptr);
+    implant["gland_at_planning_mm"] =
+        history.gland_at_planning_mm ? list_of(*history.gland_at_planning_mm) : Json(nullptr);
+    implant["gland_at_delivery_mm"] =
+        history.gland_at_delivery_mm ? list_of(*history.gland_at_delivery_mm) : Json(nullptr);
+    implant["at_planning"] = outcome.at_planning ? other_json(*outcome.at_planning, {}) : Json(nullptr);
   }
-  const OrderedJson json = {{"version", version()},
-                            {"scenario", outcome.scenario.name},
-                            {"nodes", history.nodes},
-                            {"implant", implant},
-                            {"warnings", outcome.warnings}};
-  return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
+  const Json json = {{"version", version()},
+                     {"scenario", outcome.scenario.name},
+                     {"nodes", history.nodes},
+                     {"implant", implant},
+                     {"warnings", outcome.warnings}};
+  return record::pretty(json);
 }
 
 }  // namespace stylet

@@ -16,7 +16,6 @@
 #include "implant/kind_words.hpp"
 #include "implant/oedema_section.hpp"
 #include "implant/procedure_facts.hpp"
-#include "report/assets.hpp"
 #include "report/html_parts.hpp"
 #include "report/text.hpp"
 
@@ -88,13 +87,13 @@ Result<std::string> implant_page(const ImplantOutcome& outcome) {
   std::string choices;
   for (const ChoiceSection& section : choice_sections(outcome)) choices += choice_html(section, outcome);
   Slots slots{
-      {"report", "implant report"},
       {"kicker",
        implant == Implant::temporary ? "Simulation of a temporary implant (HDR)" : "Simulation of a seed implant"},
       {"kind", "simulation"},
-      {"title", html_escaped(outcome.scenario.name)},
+      {"title", html_escaped(outcome.scenario.name) + " – implant report"},
+      {"heading", html_escaped(outcome.scenario.name)},
       {"facts", html_prose(plan_line(outcome.planned))},
-      {"css", std::string(implant_css()) + printed_margins(outcome.planned)},
+      {"more_css", printed_margins(outcome.planned)},
       {"record", record_of(outcome.planned)},
       {"warnings", box_of_warnings(outcome.warnings)},
       {"tiles", implant_tiles(outcome)},
@@ -130,10 +129,9 @@ Result<std::string> implant_page(const ImplantOutcome& outcome) {
       {"data", json_script_safe(dose_page_data(outcome.delivered, dvh.delivered, colours))},
       {"more_data", "<script type=\"application/json\" id=\"implant-data\">" +
                         json_script_safe(implant_page_data(outcome, dvh.planned, found)) + "</script>\n"},
-      {"js", script_safe(implant_js())},
   };
   add_kind_words(slots, implant);
-  return page_about_dose(implant_template(), slots);
+  return page_about_dose(implant_assets(), slots);
 }
 
 }  // namespace stylet::results

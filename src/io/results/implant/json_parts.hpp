@@ -4,15 +4,13 @@
 #include "record/json.hpp"
 #include "stylet/implant/seed_errors.hpp"
 
-#include <nlohmann/json.hpp>
-
 /// Parts of summary.json of `stylet implant` that stand in several places of it.
 namespace stylet::results {
 
-using OrderedJson = nlohmann::ordered_json;
+using record::Json;
 using record::list_of;
 
 /// Number of seeds, distances, and signed errors along the axes.
-OrderedJson errors_json(const SeedErrors& errors);
+Json errors_json(const SeedErrors& errors);
 
 }  // namespace stylet::results

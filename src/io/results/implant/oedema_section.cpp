@@ -62,10 +62,10 @@ std::string oedema_section(const DoseCourse* course) {
 nlohmann::ordered_json oedema_curves_json(const DoseCourse& course) {
   constexpr double kHalfLives = 4.0;  // when 94 % of the dose is given
   constexpr int kParts = 120;
-  OrderedJson json{{"days", OrderedJson::array()},
-                   {"swelling_percent", {OrderedJson::array(), OrderedJson::array(), OrderedJson::array()}},
-                   {"D90_Gy", OrderedJson::array()},
-                   {"D90_without_swelling_Gy", OrderedJson::array()}};
+  Json json{{"days", Json::array()},
+            {"swelling_percent", {Json::array(), Json::array(), Json::array()}},
+            {"D90_Gy", Json::array()},
+            {"D90_without_swelling_Gy", Json::array()}};
   for (int k = 0; k <= kParts; ++k) {
     const double days = kHalfLives * course.half_life_days * k / kParts;
     const DoseMoment moment = course.at(days);
@@ -82,17 +82,16 @@ nlohmann::ordered_json oedema_curves_json(const DoseCourse& course) {
 }
 
 nlohmann::ordered_json oedema_json(const DoseCourse& course) {
-  const auto or_null = [](double value) { return std::isfinite(value) ? OrderedJson(value) : OrderedJson(nullptr); };
-  OrderedJson moments = OrderedJson::array();
+  Json moments = Json::array();
   for (const DoseMoment& m : course.moments) {
-    moments.push_back({{"days", or_null(m.days)},
+    moments.push_back({{"days", m.days},
                        {"swelling_percent", list_of(100.0 * (course.swelling.factors(m.days) - Vec3::Ones()))},
                        {"D90_Gy", m.d90_Gy},
                        {"D90_without_swelling_Gy", m.d90_without_swelling_Gy}});
   }
   return {{"samples", course.samples},
           {"D90_taken_away_Gy", course.moments.back().taken_away_Gy()},
-          {"days_until_half_is_taken", or_null(course.days_until_half_is_taken())},
+          {"days_until_half_is_taken", course.days_until_half_is_taken()},
           {"moments", moments}};
 }
 

@@ -3,30 +3,20 @@
 
 #include <string_view>
 
-/// Pages, style sheets and scripts of web/report/, which the build embeds into the library: for the report of an
-/// insertion and for the pages of stylet dose, stylet implant, stylet reproduce and stylet validate.
+/// Pages of web/report/, which the build embeds into the library.
 namespace stylet::results {
 
-std::string_view report_template();  ///< HTML with {{slots}}
-std::string_view report_css();
-std::string_view report_js();
+/// What a page is made of: its body, which is HTML with {{slots}}, its style sheet and its script.
+struct PageAssets {
+  std::string_view body, css, js;
+};
 
-std::string_view dose_shell();  ///< HTML with {{slots}}, around the bodies of dose and implant
+PageAssets report_assets();     ///< the report of an insertion
+PageAssets dose_assets();       ///< the page of stylet dose
+PageAssets implant_assets();    ///< the page of stylet implant
+PageAssets reproduce_assets();  ///< the page of stylet reproduce
+PageAssets validate_assets();   ///< the page of stylet validate
 
-std::string_view dose_template();  ///< HTML with {{slots}}, the body of the page
-std::string_view dose_css();
-std::string_view dose_js();
-
-std::string_view implant_template();  ///< HTML with {{slots}}, the body of the page
-std::string_view implant_css();
-std::string_view implant_js();
-
-std::string_view reproduce_template();  ///< HTML with {{slots}}
-std::string_view reproduce_css();
-std::string_view reproduce_js();
-
-std::string_view validate_template();  ///< HTML with {{slots}}
-std::string_view validate_css();
-std::string_view validate_js();
+std::string_view page_shell();  ///< HTML with {{slots}}, around the body of every page
 
 }  // namespace stylet::results

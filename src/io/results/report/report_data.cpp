@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/report_data.hpp"
 
+#include "record/json.hpp"
 #include "report/narrative.hpp"
 #include "report/text.hpp"
 #include "stylet/io/hole_map_io.hpp"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -19,7 +18,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "typed arrays in the report are little-endian");
 
-using Json = nlohmann::ordered_json;
+using record::Json;
 
 constexpr std::size_t kMostSteps = 40000;                // largest number of points of a curve
 constexpr std::size_t kMostDisplacementBytes = 6 << 20;  // largest size of all displacements, before base 64
@@ -116,17 +115,6 @@ struct SurfaceNodes {
  private:
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 };
-
-std::string hex(const Colour& colour) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  std::string text = "#";
-  for (const double part : colour) {
-    const auto value = static_cast<unsigned>(std::lround(255 * part));
-    text += kDigits[value >> 4U & 15U];
-    text += kDigits[value & 15U];
-  }
-  return text;
-}
 
 Json surface_json(const TetMesh& mesh, std::span<const RegionView> regions, const SurfaceNodes& surface) {
   std::vector<float> points;
@@ -244,10 +232,10 @@ std::string report_data(const RunRecording& run, std::span<const RegionView> reg
       {"frames", frames_json(run, chosen, surface, scale)},
       {"first_frame", std::min<std::ptrdiff_t>(shown - chosen.begin(), static_cast<std::ptrdiff_t>(chosen.size()) - 1)},
       {"needle_diameter_mm", run.info.needle_diameter_mm},
-      {"entry_mm", {run.info.entry_mm.x(), run.info.entry_mm.y(), run.info.entry_mm.z()}},
-      {"direction", {run.info.direction.x(), run.info.direction.y(), run.info.direction.z()}},
+      {"entry_mm", record::list_of(run.info.entry_mm)},
+      {"direction", record::list_of(run.info.direction)},
   };
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return record::compact(json);
 }
 
 }  // namespace stylet::results

@@ -2,8 +2,8 @@
 #include "report/report_html.hpp"
 
 #include "fixed_number.hpp"
-#include "report/assets.hpp"
 #include "report/gland_section.hpp"
+#include "report/html_parts.hpp"
 #include "report/map_section.hpp"
 #include "report/narrative.hpp"
 #include "report/page_template.hpp"
@@ -22,31 +22,26 @@
 namespace stylet::results {
 namespace {
 
-std::string cell(const std::string& text) { return "<td>" + html_escaped(text) + "</td>"; }
 std::string number_cell(const std::string& text) { return "<td class=\"number\">" + html_escaped(text) + "</td>"; }
 std::string item(const std::string& text) { return "<li>" + html_escaped(text) + "</li>"; }
 
-std::string tile(const std::string& value, const std::string& caption) {
-  return "<li><b>" + html_escaped(value) + "</b><span>" + html_escaped(caption) + "</span></li>";
-}
-
 std::string tiles(const RunRecording& run, const Frame& deepest) {
   const Summary& s = *run.summary;
-  std::string html = tile(fmt::format("{:.1f} mm", deepest.base_depth_mm), "deepest insertion") +
-                     tile(fmt::format("{:.2f} N", s.peak_axial_N), "largest axial force");
+  std::string html = figure_tile(fmt::format("{:.1f} mm", deepest.base_depth_mm), "deepest insertion") +
+                     figure_tile(fmt::format("{:.2f} N", s.peak_axial_N), "largest axial force");
   if (!run.info.target_regions.empty()) {
-    html += tile(fmt::format("{:.2f} mm", s.target_shift_centroid_mm.norm()), "shift of the target’s centre") +
-            tile(fmt::format("{:.1f} mm", s.target_shift_max_mm), "largest motion in the target");
+    html += figure_tile(fmt::format("{:.2f} mm", s.target_shift_centroid_mm.norm()), "shift of the target’s centre") +
+            figure_tile(fmt::format("{:.1f} mm", s.target_shift_max_mm), "largest motion in the target");
   }
-  html += tile(fmt::format("{:.1f} mm", s.tip_deflection_mm), "tip beside its straight line") +
-          tile(fmt::format("{:.0f} µs", s.step_us_p99), "99 % of the steps within");
+  html += figure_tile(fmt::format("{:.1f} mm", s.tip_deflection_mm), "tip beside its straight line") +
+          figure_tile(fmt::format("{:.0f} µs", s.step_us_p99), "99 % of the steps within");
   return html;
 }
 
 std::string event_rows(const std::vector<Event>& events) {
   std::string html;
   for (const Event& e : events) {
-    html += "<tr>" + cell(readable_name(to_string(e.kind))) + cell(readable_name(e.region)) +
+    html += "<tr>" + text_cell(readable_name(to_string(e.kind))) + text_cell(readable_name(e.region)) +
             number_cell(fixed(e.time_s, 3)) + number_cell(fixed(e.depth_mm, 2)) + number_cell(fixed(e.force_N, 3)) +
             "</tr>";
   }
@@ -151,11 +146,11 @@ Result<std::string> report_html(const RunRecording& run, std::span<const RegionV
     if (std::find(warnings.begin(), warnings.end(), w) == warnings.end()) warnings.push_back(w);
   }
   const Slots slots{
-      {"version", html_escaped(run.info.version)},
-      {"title", html_escaped(run.info.scenario_name)},
+      {"title", html_escaped(run.info.scenario_name) + " – needle insertion report"},
+      {"heading", html_escaped(run.info.scenario_name)},
+      {"kicker", "Needle insertion report"},
       {"facts",
        html_escaped(fmt::format("{}, {} nodes, {} steps", run.info.method, run.mesh.nodes.size(), run.summary->steps))},
-      {"css", std::string(report_css())},
       {"story", story},
       {"tiles", tiles(run, run.frames[moments.deepest])},
       {"warnings", warning_box(warnings)},
@@ -170,10 +165,10 @@ Result<std::string> report_html(const RunRecording& run, std::span<const RegionV
       {"parameters", parameter_tables(run.info.parameters)},
       {"scenario", html_escaped(run.info.scenario_text)},
       {"versions", versions(run)},
+      {"data_id", "report-data"},
       {"data", json_script_safe(report_data(run, regions, moments, map))},
-      {"js", script_safe(report_js())},
   };
-  return fill_page(report_template(), slots, "report.html");
+  return whole_page(report_assets(), slots, "report.html");
 }
 
 }  // namespace stylet::results

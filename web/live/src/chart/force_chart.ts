@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Forces on the base as a strip chart over time or depth. uPlot draws scales and axes. The curves are drawn from the
 // ring: the steps are divided into stretches and the extremes of each are drawn, so that no peak is lost.
+import { circle, strokeLine } from '../../../shared/canvas';
 import uPlot from 'uplot';
 import { drawEvents, labelsHeight, type PlacedEvent } from '../../../shared/event_labels';
 import { axis, CURVES, fontSize, INK, lineScale } from '../../../shared/plot_style';
@@ -174,8 +175,7 @@ export class ForceChart {
       ctx.lineTo(u.valToPos(xs[end], 'x', true), u.valToPos(ring[key][end], 'y', true));
       ctx.stroke();
       const p = this.replayed ? ring.place(Math.min(ring.count - 1, ring.since(this.session.frame?.time ?? 0))) : end;
-      ctx.beginPath();
-      ctx.arc(u.valToPos(xs[p], 'x', true), u.valToPos(ring[key][p], 'y', true), 3 * unit, 0, 2 * Math.PI);
+      circle(ctx, u.valToPos(xs[p], 'x', true), u.valToPos(ring[key][p], 'y', true), 3 * unit);
       ctx.fillStyle = color;
       ctx.fill();
     }
@@ -188,10 +188,7 @@ export class ForceChart {
     const x = u.valToPos(this.session.frame?.time ?? 0, 'x', true);
     ctx.strokeStyle = INK;
     ctx.lineWidth = 1.5 * devicePixelRatio;
-    ctx.beginPath();
-    ctx.moveTo(x, bbox.top);
-    ctx.lineTo(x, bbox.top + bbox.height);
-    ctx.stroke();
+    strokeLine(ctx, x, bbox.top, x, bbox.top + bbox.height);
   }
 
   private drawZero(u: uPlot): void {
@@ -199,9 +196,6 @@ export class ForceChart {
     const y = u.valToPos(0, 'y', true);
     ctx.strokeStyle = '#9aa0a8';
     ctx.lineWidth = devicePixelRatio;
-    ctx.beginPath();
-    ctx.moveTo(bbox.left, y);
-    ctx.lineTo(bbox.left + bbox.width, y);
-    ctx.stroke();
+    strokeLine(ctx, bbox.left, y, bbox.left + bbox.width, y);
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The needle's depth as a long track with a handle to drag, with marks of events and of the planned depth, and two
 // buttons that push and pull while they are held.
+import { circle, strokeLine } from '../../../shared/canvas';
 import { ACCENT, HARM, INK, SEED, SOFT } from '../palette';
 import { element } from '../../../shared/dom';
 import { CanvasBox } from '../canvas_box';
@@ -141,20 +142,14 @@ export class PushBar {
     for (let mm = Math.ceil(low / 5) * 5; mm <= high; mm += 5) {
       const x = this.toPixels(mm);
       const ten = mm % 10 === 0;
-      context.beginPath();
-      context.moveTo(x, middle + 0.45 * text);
-      context.lineTo(x, middle + (ten ? 0.95 : 0.7) * text);
-      context.stroke();
+      strokeLine(context, x, middle + 0.45 * text, x, middle + (ten ? 0.95 : 0.7) * text);
       if (ten) context.fillText(mm === 0 ? 'skin' : String(mm), x, height - 0.25 * text);
     }
     const bar = (from: number, to: number, color: string, thick: number) => {
       context.strokeStyle = color;
       context.lineWidth = thick;
       context.lineCap = 'round';
-      context.beginPath();
-      context.moveTo(this.toPixels(from), middle);
-      context.lineTo(this.toPixels(to), middle);
-      context.stroke();
+      strokeLine(context, this.toPixels(from), middle, this.toPixels(to), middle);
     };
     bar(low, high, '#e3e6ea', 0.5 * text);
     if (!frame || !scene) return;
@@ -190,8 +185,7 @@ export class PushBar {
     else if (depths[dropped] !== undefined) this.flag(depths[dropped], middle, `seed ${dropped + 1} of ${depths.length}`, SEED, text);
     depths.forEach((depth, i) => {
       const x = this.toPixels(depth);
-      context.beginPath();
-      context.arc(x, middle, 0.3 * text, 0, 2 * Math.PI);
+      circle(context, x, middle, 0.3 * text);
       context.fillStyle = i < dropped ? SEED : '#fff';
       context.fill();
       context.strokeStyle = i <= dropped ? SEED : SOFT;
@@ -205,10 +199,7 @@ export class PushBar {
     const x = this.toPixels(depth);
     context.strokeStyle = color;
     context.lineWidth = 1.5;
-    context.beginPath();
-    context.moveTo(x, middle - 0.75 * text);
-    context.lineTo(x, middle + 0.4 * text);
-    context.stroke();
+    strokeLine(context, x, middle - 0.75 * text, x, middle + 0.4 * text);
     context.fillStyle = color;
     context.font = this.box.font(0.76);
     const room = context.measureText(label).width / 2 + 2;
@@ -223,8 +214,7 @@ export class PushBar {
     const { context, text } = this.box;
     const { steering } = this.session;
     const r = 0.82 * text;
-    context.beginPath();
-    context.arc(x, middle, r, 0, 2 * Math.PI);
+    circle(context, x, middle, r);
     context.fillStyle = steering ? ACCENT : '#8a9099';
     context.fill();
     context.lineWidth = 2;

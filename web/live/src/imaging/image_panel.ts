@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The clinician's view, in place of the 3D view: ultrasound or X-ray, with the controls of scanner, stepper and C-arm.
-import { button, element } from '../../../shared/dom';
+import { button, element, keyButton } from '../../../shared/dom';
 import { onRepaint, onRepaintEvery } from '../../../shared/repaint';
 import type { Session } from '../session';
 import type { ProbeState, ShownImage } from './image';
@@ -91,21 +91,15 @@ export class ImagePanel {
     root.append(this.views.ultrasound, this.views.xray, this.knobs.ultrasound, this.knobs.xray, this.note);
     this.ultrasound = new UltrasoundView(this.views.ultrasound, session);
     new XrayView(this.views.xray, session);
-    const key = (text: string, letter: string, title: string, action: () => void) => {
-      const b = button('', action);
-      b.append(text, ' ', element('kbd', '', letter));
-      b.title = title;
-      return b;
-    };
     this.arrays = [
-      ['transverse', key('Transverse', 'T', 'Across the probe', () => this.show('transverse'))],
-      ['sagittal', key('Sagittal', 'S', 'Along the probe', () => this.show('sagittal'))],
+      ['transverse', keyButton('Transverse', 'T', 'Across the probe', () => this.show('transverse'))],
+      ['sagittal', keyButton('Sagittal', 'S', 'Along the probe', () => this.show('sagittal'))],
     ];
     this.steps = [
-      key('◀', '[', 'One click of the stepper to inferior', () => this.step(-1)),
-      key('▶', ']', 'One click of the stepper to superior', () => this.step(1)),
+      keyButton('◀', '[', 'One click of the stepper to inferior', () => this.step(-1)),
+      keyButton('▶', ']', 'One click of the stepper to superior', () => this.step(1)),
     ];
-    this.freeze = key('Freeze', 'F', 'Keep this picture', () => this.toggleFreeze());
+    this.freeze = keyButton('Freeze', 'F', 'Keep this picture', () => this.toggleFreeze());
     this.freeze.setAttribute('aria-pressed', 'false');
     this.build();
     this.ultrasound.onPointer = (text) => (this.pointer.textContent = text);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The ultrasound picture as a scanner shows it: the probe at the bottom, a scale in centimetres, the dots of the
 // template, a caliper. The true places of needle and seeds can be drawn over it; they are off at first.
+import { circle, strokeLine } from '../../../shared/canvas';
 import { CanvasBox } from '../canvas_box';
 import { holes, type Hole } from '../scene';
 import type { Session } from '../session';
@@ -228,13 +229,11 @@ export class UltrasoundView {
     this.holes.forEach((hole, k) => {
       const [x, y] = at(hole);
       const whole = /^[A-Z]/.test(hole.name) && !hole.name.includes('.');
-      context.beginPath();
-      context.arc(x, y, whole ? 1.4 * size : size, 0, 2 * Math.PI);
+      circle(context, x, y, whole ? 1.4 * size : size);
       context.fill();
       if (hole.name === status?.hole) {
         context.strokeStyle = DOT_COLOR;
-        context.beginPath();
-        context.arc(x, y, 0.3 * scene.template!.pitch_mm * this.place.scale, 0, 2 * Math.PI);
+        circle(context, x, y, 0.3 * scene.template!.pitch_mm * this.place.scale);
         context.stroke();
       }
       const [column, row] = [k % columns.length, Math.floor(k / columns.length)];
@@ -255,15 +254,11 @@ export class UltrasoundView {
       const b = inPlane(image, line.subarray(k, k + 3));
       if (a[2] * b[2] > 0 && Math.min(Math.abs(a[2]), Math.abs(b[2])) > 4 * NEAR_PLANE_MM) continue;
       context.globalAlpha = Math.min(Math.abs(a[2]), Math.abs(b[2])) <= NEAR_PLANE_MM || a[2] * b[2] <= 0 ? 1 : 0.3;
-      context.beginPath();
-      context.moveTo(...this.onCanvas(a[0], a[1]));
-      context.lineTo(...this.onCanvas(b[0], b[1]));
-      context.stroke();
+      strokeLine(context, ...this.onCanvas(a[0], a[1]), ...this.onCanvas(b[0], b[1]));
       if (a[2] * b[2] > 0) continue;
       const share = a[2] / (a[2] - b[2]);
       const [x, y] = this.onCanvas(a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]));
-      context.beginPath();
-      context.arc(x, y, 5, 0, 2 * Math.PI);
+      circle(context, x, y, 5);
       context.stroke();
     }
     for (const seed of seeds?.now_mm ?? []) {
@@ -283,10 +278,7 @@ export class UltrasoundView {
     context.strokeStyle = context.fillStyle = CALIPER_COLOR;
     context.lineWidth = 1.2;
     context.setLineDash([4, 3]);
-    context.beginPath();
-    context.moveTo(...from);
-    context.lineTo(...to);
-    context.stroke();
+    strokeLine(context, ...from, ...to);
     context.setLineDash([]);
     for (const [x, y] of [from, to]) {
       context.beginPath();

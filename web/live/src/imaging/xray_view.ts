@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The X-ray picture, with a scale in centimetres.
+import { strokeLine } from '../../../shared/canvas';
 import { CanvasBox } from '../canvas_box';
 import type { Session } from '../session';
 import type { LiveXray } from './image';
@@ -41,10 +42,7 @@ export class XrayView {
     const cm = (10 / image.mm_per_pixel) * scale;
     context.strokeStyle = context.fillStyle = SCALE_COLOR;
     context.lineWidth = 2;
-    context.beginPath();
-    context.moveTo(left + text, box.height - 1.2 * text);
-    context.lineTo(left + text + 5 * cm, box.height - 1.2 * text);
-    context.stroke();
+    strokeLine(context, left + text, box.height - 1.2 * text, left + text + 5 * cm, box.height - 1.2 * text);
     context.font = box.font(0.8);
     context.textAlign = 'left';
     context.textBaseline = 'bottom';

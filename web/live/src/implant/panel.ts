@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The plan to follow: dose so far, what to do for the next seed, and the needles of the plan.
-import { button, element } from '../../../shared/dom';
+import { button, element, keyButton } from '../../../shared/dom';
 import type { HandControl } from '../hand';
 import { onRepaintEvery } from '../../../shared/repaint';
 import type { Session } from '../session';
@@ -75,17 +75,11 @@ export class ImplantPanel {
   constructor(private readonly root: HTMLElement, private readonly session: Session, private readonly actions: ImplantActions, showResult: () => void) {
     const figures = element('div', 'plan-figures');
     figures.append(this.d90.box, this.v100.box, this.count.box, this.error.box);
-    const make = (text: string, key: string, title: string, action: () => void) => {
-      const b = button('', action);
-      b.append(text, ' ', element('kbd', '', key));
-      b.title = title;
-      return b;
-    };
-    this.drop = make('Drop', 'D', 'Drop the next seed where the tip is now', () => actions.drop());
+    this.drop = keyButton('Drop', 'D', 'Drop the next seed where the tip is now', () => actions.drop());
     this.drop.classList.add('drop');
-    this.undo = make('Take back', 'U', 'Take the last seed back (also Ctrl Z)', () => actions.undo());
-    this.go = make('Go there', 'G', 'Move the needle to the planned depth of the next seed', () => actions.go());
-    this.next = make('Next needle', 'N', 'Put the next needle of the plan that has seeds in front of the patient', () => actions.next());
+    this.undo = keyButton('Take back', 'U', 'Take the last seed back (also Ctrl Z)', () => actions.undo());
+    this.go = keyButton('Go there', 'G', 'Move the needle to the planned depth of the next seed', () => actions.go());
+    this.next = keyButton('Next needle', 'N', 'Put the next needle of the plan that has seeds in front of the patient', () => actions.next());
     this.result = button('Result', showResult);
     this.result.title = 'Goals, errors and their reasons so far';
     const row = element('div', 'plan-buttons');

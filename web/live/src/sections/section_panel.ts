@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A section with its title and the controls of its plane.
-import { button, element } from '../../../shared/dom';
+import { button, element, setSlider, slider } from '../../../shared/dom';
 import type { Session } from '../session';
 import { onRepaint } from '../../../shared/repaint';
 import type { Plane } from './plane';
@@ -11,7 +11,7 @@ const NOTCH_MM = 1;
 
 export class SectionPanel {
   readonly view: SectionView;
-  private readonly slider = element('input');
+  private readonly slider: HTMLInputElement;
   private readonly place = element('output');
   private readonly follow: HTMLButtonElement;
 
@@ -20,10 +20,7 @@ export class SectionPanel {
     const head = element('div', 'section-head');
     const picture = element('div', 'canvas');
     head.append(element('h2', '', this.title), this.place);
-    this.slider.type = 'range';
-    this.slider.step = '0.5';
-    this.slider.setAttribute('aria-label', `Place of the ${plane.name} plane`);
-    this.slider.addEventListener('input', () => plane.set(this.slider.valueAsNumber));
+    this.slider = slider(`Place of the ${plane.name} plane`, '0.5', (value) => plane.set(value));
     this.follow = button(transverse ? 'Follow tip' : 'Follow hole', () => plane.follow(!plane.follows));
     head.append(this.slider, this.follow);
     root.append(head, picture);
@@ -43,9 +40,7 @@ export class SectionPanel {
 
   private update(): void {
     const { plane } = this;
-    this.slider.min = plane.low.toFixed(1);
-    this.slider.max = plane.high.toFixed(1);
-    this.slider.value = String(plane.value);
+    setSlider(this.slider, plane.low.toFixed(1), plane.high.toFixed(1), plane.value);
     this.place.textContent = `${plane.axis === 2 ? 'z' : 'x'} = ${plane.value.toFixed(1).replace('-', '−')} mm`;
     this.follow.setAttribute('aria-pressed', String(plane.follows));
   }

@@ -2,6 +2,7 @@
 // One section, oriented as in planning systems: anterior is up. In the transverse section the patient's right is at the
 // left of the picture; in the sagittal section superior is at the left, as a transrectal probe shows it. Letters at the
 // edges give the directions.
+import { circle } from '../../../shared/canvas';
 import { INK, lineScale, SOFT } from '../../../shared/plot_style';
 import { roundDown } from '../../../shared/colors';
 import type { Anatomy } from '../anatomy';
@@ -238,8 +239,7 @@ export class SectionView {
     const crosses = crossing(line, this.plane.axis, this.plane.value, HIT);
     if (this.plane.axis === 2) {
       const at = crosses ? HIT : tip;
-      context.beginPath();
-      context.arc(this.u(at[0], at[2]), this.v(at[1]), r, 0, 2 * Math.PI);
+      circle(context, this.u(at[0], at[2]), this.v(at[1]), r);
       context.fillStyle = crosses ? INK : '#fff';
       context.strokeStyle = crosses ? '#fff' : INK;
       context.lineWidth = 2;
@@ -247,8 +247,7 @@ export class SectionView {
       context.stroke();
     } else {
       this.drawTipError(frame, scene, r);
-      context.beginPath();
-      context.arc(this.u(tip[0], tip[2]), this.v(tip[1]), r, 0, 2 * Math.PI);
+      circle(context, this.u(tip[0], tip[2]), this.v(tip[1]), r);
       context.fillStyle = '#f0e442';
       context.strokeStyle = INK;
       context.lineWidth = 1.5;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Draws the guide template over a section: in the transverse section its holes with the names of columns and rows, in
 // the sagittal section its plate from the side.
+import { circle, strokeLine } from '../../../shared/canvas';
 import { INK, SOFT } from '../../../shared/plot_style';
 import type { CanvasBox } from '../canvas_box';
 import type { Hole, Scene } from '../scene';
@@ -22,8 +23,7 @@ export function drawTemplate(box: CanvasBox, scene: Scene, holes: Hole[], curren
     // Upper-case letters and whole numbers are bolder, as on the plate.
     const whole = /^[A-Z]/.test(hole.name) && !hole.name.includes('.');
     context.globalAlpha = whole ? 0.9 : 0.45;
-    context.beginPath();
-    context.arc(place.u(hole.x, 0), place.v(hole.y), whole ? 1.25 * dot : dot, 0, 2 * Math.PI);
+    circle(context, place.u(hole.x, 0), place.v(hole.y), whole ? 1.25 * dot : dot);
     context.fill();
   }
   context.globalAlpha = 1;
@@ -34,8 +34,7 @@ export function drawTemplate(box: CanvasBox, scene: Scene, holes: Hole[], curren
     if (!isCurrent && !planned.has(hole.name)) continue;
     context.strokeStyle = isCurrent ? INK : SOFT;
     context.lineWidth = isCurrent ? 1.8 : 1.2;
-    context.beginPath();
-    context.arc(place.u(hole.x, 0), place.v(hole.y), ring, 0, 2 * Math.PI);
+    circle(context, place.u(hole.x, 0), place.v(hole.y), ring);
     context.stroke();
   }
   context.fillStyle = SOFT;
@@ -65,9 +64,6 @@ export function drawTemplateEdge(box: CanvasBox, scene: Scene, place: Place): vo
   context.strokeStyle = SOFT;
   context.lineWidth = Math.max(2, 0.8 * place.pixels);
   context.globalAlpha = 0.6;
-  context.beginPath();
-  context.moveTo(u, place.v(template.centre_mm[1] - half));
-  context.lineTo(u, place.v(template.centre_mm[1] + half));
-  context.stroke();
+  strokeLine(context, u, place.v(template.centre_mm[1] - half), u, place.v(template.centre_mm[1] + half));
   context.restore();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Controls of the plane that cuts the anatomy open in the 3D view.
-import { element } from '../../../shared/dom';
+import { element, setSlider, slider } from '../../../shared/dom';
 import { organBounds, type Scene } from '../scene';
 import type { Stage } from './stage';
 
@@ -14,7 +14,10 @@ const PLANES = [
 export class CutControl {
   readonly element = element('div', 'cut');
   private chosen: (typeof PLANES)[number] = PLANES[0];
-  private readonly slider = element('input');
+  private readonly slider = slider('Place of the cut', '0.5', (value) => {
+    if (this.chosen.axis !== null) this.values[this.chosen.axis] = value;
+    this.apply();
+  });
   private readonly text = element('output');
   private values = [0, 0, 0];
 
@@ -27,14 +30,7 @@ export class CutControl {
       this.setRange();
       this.apply();
     });
-    this.slider.type = 'range';
-    this.slider.step = '0.5';
-    this.slider.setAttribute('aria-label', 'Place of the cut');
     this.slider.disabled = true;
-    this.slider.addEventListener('input', () => {
-      if (this.chosen.axis !== null) this.values[this.chosen.axis] = this.slider.valueAsNumber;
-      this.apply();
-    });
     this.element.append(choice, this.slider, this.text);
   }
 
@@ -52,9 +48,7 @@ export class CutControl {
     const { axis } = this.chosen;
     this.slider.disabled = axis === null;
     if (axis === null) return;
-    this.slider.min = String(Math.floor(this.bounds[axis][0]));
-    this.slider.max = String(Math.ceil(this.bounds[axis][1]));
-    this.slider.value = String(this.values[axis]);
+    setSlider(this.slider, Math.floor(this.bounds[axis][0]), Math.ceil(this.bounds[axis][1]), this.values[axis]);
   }
 
   private apply(): void {

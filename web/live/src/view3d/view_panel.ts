@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The 3D view with its controls: visible parts, colours, cut, and direction of view.
 import { contactKey, colorBar, scaleMarks } from '../../../shared/keys';
-import { button, element, switchOf } from '../../../shared/dom';
+import { button, element, radioButtons, switchOf } from '../../../shared/dom';
 import { regionRow, rowName } from '../../../shared/region_look';
 import { VIEWS } from '../../../shared/views';
 import { Anatomy } from '../anatomy';
@@ -45,7 +45,10 @@ export class ViewPanel {
   private opening = false;
   private mode: string | undefined;
   private seedsWanted = true;
-  private readonly seedsBox = element('label');
+  private readonly seedsBox = switchOf('Seeds, planned and dropped', this.seedsWanted, null, (on) => {
+    this.seedsWanted = on;
+    this.showSeeds();
+  });
 
   constructor(private readonly root: HTMLElement, private readonly session: Session, hand: HandControl) {
     root.append(this.picture, this.bar, this.scale, this.note);
@@ -195,33 +198,15 @@ export class ViewPanel {
   private buildSettings(stage: Stage): void {
     const summary = element('summary', '', 'View');
     summary.title = 'Choose what the 3D view shows';
-    const colors = element('div', 'choice');
-    for (const [text, on] of [['Tissue', false], ['Displacement', true]] as const) {
-      const label = element('label');
-      const input = element('input');
-      input.type = 'radio';
-      input.name = 'colors';
-      input.checked = !on;
-      input.addEventListener('change', () => {
-        this.byDisplacement = on;
-        this.scale.hidden = !on;
-        for (const surface of stage.surfaces) surface.colorByDisplacement(on);
-        stage.showTissue(this.most);
-      });
-      label.append(input, text);
-      colors.append(label);
-    }
+    const colors = radioButtons('colors', [['Tissue', false], ['Displacement', true]] as const, (on) => {
+      this.byDisplacement = on;
+      this.scale.hidden = !on;
+      for (const surface of stage.surfaces) surface.colorByDisplacement(on);
+      stage.showTissue(this.most);
+    });
     const contacts = visibilityBox(stage, stage.contacts, 'Contact points');
     const ghost = visibilityBox(stage, stage.ghost, 'Gland before the insertion');
     const tipError = visibilityBox(stage, stage.tipError, 'Tip error, drawn in the patient at rest');
-    const seeds = element('input');
-    seeds.type = 'checkbox';
-    seeds.checked = this.seedsWanted;
-    seeds.addEventListener('change', () => {
-      this.seedsWanted = seeds.checked;
-      this.showSeeds();
-    });
-    this.seedsBox.append(seeds, 'Seeds, planned and dropped');
     this.cutControl = new CutControl(stage);
     const body = element('div', 'settings-body');
     body.append(element('h3', '', 'Colours'), colors, element('h3', '', 'Cut open'), this.cutControl.element,

@@ -13,7 +13,7 @@ export interface ContourPlane {
 }
 
 /** The planes across a normal in which a structure has contours, from below; none if its contours lie otherwise. */
-export function contourPlanes({ contours }: Structure, normal: 0 | 1 | 2): ContourPlane[] {
+export function contourPlanes({ contours_mm: contours }: Structure, normal: 0 | 1 | 2): ContourPlane[] {
   const planes: ContourPlane[] = [];
   for (const contour of contours) {
     let low = Infinity;

@@ -50,7 +50,7 @@ export function buildDifferenceKey({ difference }: DoseData, box: HTMLElement): 
     const swatch = element('i', 'swatch');
     swatch.style.background = `rgb(${colour(share).join(' ')})`;
     const end = share === -1 ? ' or less' : share === 1 ? ' or more' : '';
-    part.append(swatch, `${share > 0 ? '+' : ''}${numberText(Number((share * difference.limit).toPrecision(3)))} Gy${end}`);
+    part.append(swatch, `${share > 0 ? '+' : ''}${numberText(Number((share * difference.limit_Gy).toPrecision(3)))} Gy${end}`);
     box.append(part);
   }
   box.append(element('span', '', 'no colour: not compared'));

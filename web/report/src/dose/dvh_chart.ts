@@ -14,7 +14,7 @@ const FOUND_DASHES = [2, 3];
 
 function seriesOf({ dvh, structures }: DoseData, planned?: number[][], found?: number[][]): Series[] {
   return structures.flatMap(({ name, color }, k): Series[] => {
-    const own = { key: String(k), color, x: dvh.dose, width: 2.2, label: name, y: dvh.percent[k], dashes: CURVE_DASHES[k % CURVE_DASHES.length] };
+    const own = { key: String(k), color, x: dvh.dose_Gy, width: 2.2, label: name, y: dvh.percent[k], dashes: CURVE_DASHES[k % CURVE_DASHES.length] };
     if (!planned) return [own];
     return [
       { ...own, label: `${name}, delivered`, dashes: [] },
@@ -25,10 +25,10 @@ function seriesOf({ dvh, structures }: DoseData, planned?: number[][], found?: n
 }
 
 /** Where the plot ends at first: behind 200 % of the prescribed dose; without one, where the last structure fades out. */
-function firstEnd({ dvh, prescription }: DoseData): number {
-  const last = dvh.dose[dvh.dose.length - 1];
+function firstEnd({ dvh, prescription_Gy: prescription }: DoseData): number {
+  const last = dvh.dose_Gy[dvh.dose_Gy.length - 1];
   if (prescription) return Math.min(last, 2.5 * prescription);
-  return Math.max(...dvh.percent.map((curve) => dvh.dose[curve.findIndex((v) => v < 1)] ?? last));
+  return Math.max(...dvh.percent.map((curve) => dvh.dose_Gy[curve.findIndex((v) => v < 1)] ?? last));
 }
 
 /** The axis above the plot, in percent of the prescribed dose. */
@@ -53,7 +53,7 @@ function percentAxis(prescription: number): uPlot.Axis {
  * @param found those of the seeds that were found on images, beside a plan
  */
 export function buildDvhChart(data: DoseData, box: HTMLElement, legend: HTMLElement, planned?: number[][], found?: number[][]): void {
-  const { structures, prescription } = data;
+  const { structures, prescription_Gy: prescription } = data;
   if (structures.length === 0) {
     box.textContent = 'No structures were given.';
     box.style.height = 'auto';

@@ -22,7 +22,7 @@ export function buildLevelKey(data: DoseData, box: HTMLElement, marks: [string, 
     part.append(text);
     box.append(part);
   };
-  data.levels.forEach(({ color, label, dose, main }, k) => {
+  data.levels.forEach(({ color, label, dose_Gy: dose, main }, k) => {
     const gray = `${Number(dose.toPrecision(4))} Gy`;
     item(keySample(color, dashOf(k), main ? 0.75 : 0.5), label === gray ? label : `${label} (${gray})`);
   });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One section: isodose lines, outlines of structures and sources near the plane, as an SVG picture in millimetres.
-import { element } from '../../../shared/dom';
+import { element, setSlider, slider } from '../../../shared/dom';
 import { numberText } from '../../../shared/numbers';
 import { add, svg as makeSvg } from '../../../shared/svg';
 import { contourPath, contourPlanes, isAt, nearestPlane, snapped, type ContourPlane } from './contour_planes';
@@ -23,8 +23,8 @@ interface Frame {
 }
 
 function frameOf(data: DoseData, plane: Plane): Frame {
-  const [x, y] = inPicture(plane, data.centre);
-  return { left: x - data.half, top: y - data.half, size: 2 * data.half };
+  const [x, y] = inPicture(plane, data.centre_mm);
+  return { left: x - data.half_mm, top: y - data.half_mm, size: 2 * data.half_mm };
 }
 
 /** Numbers every 10 or 20 mm along both edges, and the patient's directions. */
@@ -70,7 +70,7 @@ function drawDose(svg: SVGElement, data: DoseData, plane: Plane, height: number,
   if (!cut) return;
   const labels: { at: [number, number]; toward: [number, number]; level: Level }[] = [];
   data.levels.forEach((level, k) => {
-    const lines = isolines(cut, level.dose);
+    const lines = isolines(cut, level.dose_Gy);
     const g = add(svg, 'g', { class: level.main ? 'isodose main' : 'isodose', stroke: level.color });
     add(g, 'path', { d: linePath(lines), 'stroke-dasharray': dashOf(k) });
     const toward = DIRECTIONS[k % DIRECTIONS.length];
@@ -99,7 +99,7 @@ function drawStructures(svg: SVGElement, data: DoseData, plane: Plane, height: n
       if (path && near && !isAt(near, height)) nearest.push(near.height);
       return;
     }
-    const { cloud } = structure;
+    const { cloud_mm: cloud } = structure;
     for (let k = 0; k < cloud.length; k += 3) {
       if (Math.abs(cloud[k + plane.normal] - height) > 1) continue;
       const [x, y] = inPicture(plane, cloud, k);
@@ -112,14 +112,14 @@ function drawStructures(svg: SVGElement, data: DoseData, plane: Plane, height: n
 /** Sources near the plane: capsules of their true size, seen along the plane's normal. */
 function drawSources(svg: SVGElement, { sources }: DoseData, plane: Plane, height: number): number {
   const g = add(svg, 'g', { class: sources.temporary ? 'dwells' : 'seeds' });
-  const thick = Math.max(sources.diameter, 1.1);
+  const thick = Math.max(sources.diameter_mm, 1.1);
   let shown = 0;
-  for (let s = 0; s < sources.count; s++) {
-    if (Math.abs(sources.places[3 * s + plane.normal] - height) > NEAR_MM) continue;
+  for (let s = 0; s < sources.needles.length; s++) {
+    if (Math.abs(sources.places_mm[3 * s + plane.normal] - height) > NEAR_MM) continue;
     shown++;
-    const [x, y] = inPicture(plane, sources.places, 3 * s);
+    const [x, y] = inPicture(plane, sources.places_mm, 3 * s);
     const [ax, ay] = inPicture(plane, sources.axes, 3 * s);
-    const half = sources.temporary ? 0 : Math.max(0, (sources.length - thick) / 2);
+    const half = sources.temporary ? 0 : Math.max(0, (sources.length_mm - thick) / 2);
     const d = `M${(x - half * ax).toFixed(3)} ${(y - half * ay).toFixed(3)}L${(x + half * ax + 1e-3).toFixed(3)} ${(y + half * ay).toFixed(3)}`;
     add(g, 'path', { d, class: 'rim', 'stroke-width': thick + 0.6 });
     add(g, 'path', { d, 'stroke-width': thick });
@@ -130,8 +130,8 @@ function drawSources(svg: SVGElement, { sources }: DoseData, plane: Plane, heigh
 /** The middle of the view, or the plane of the target's contours nearest to it. */
 function firstHeight(data: DoseData, plane: Plane, planes: ContourPlane[][]): number {
   const target = data.structures.findIndex((structure) => structure.region === 'prostate');
-  const near = nearestPlane(target < 0 ? [] : planes[target], data.centre[plane.normal]);
-  return near && Math.abs(near.height - data.centre[plane.normal]) < 5 ? near.height : data.centre[plane.normal];
+  const near = nearestPlane(target < 0 ? [] : planes[target], data.centre_mm[plane.normal]);
+  return near && Math.abs(near.height - data.centre_mm[plane.normal]) < 5 ? near.height : data.centre_mm[plane.normal];
 }
 
 /** @param withDifference a map of the difference instead of the lines of equal dose */
@@ -143,15 +143,8 @@ export function buildSection(data: DoseData, plane: Plane, more: MoreMarks = () 
   const frame = frameOf(data, plane);
   const { left, top, size } = frame;
   const svg = makeSvg('svg', { viewBox: `${left - EDGE} ${top - 1} ${size + EDGE + 1} ${size + EDGE}`, role: 'img', 'font-size': TEXT });
-  const slider = element('input');
-  slider.type = 'range';
-  const middle = data.centre[plane.normal];
+  const middle = data.centre_mm[plane.normal];
   const first = firstHeight(data, plane, planes);
-  slider.min = String(Math.round(middle - data.half + 1));
-  slider.max = String(Math.round(middle + data.half - 1));
-  slider.step = '0.5';
-  slider.value = String(first);
-  slider.setAttribute('aria-label', `Position of the ${plane.name.toLowerCase()} section`);
   const clip = `clip-${plane.normal}${withDifference ? '-difference' : ''}`;
   let pending = false;
   const draw = (wanted: number) => {
@@ -180,12 +173,13 @@ export function buildSection(data: DoseData, plane: Plane, more: MoreMarks = () 
     }
     svg.setAttribute('aria-label', `${plane.name} section at ${where}`);
   };
-  slider.addEventListener('input', () => {
+  const place = slider(`Position of the ${plane.name.toLowerCase()} section`, '0.5', () => {
     if (pending) return;
     pending = true;
-    requestAnimationFrame(() => draw(slider.valueAsNumber));
+    requestAnimationFrame(() => draw(place.valueAsNumber));
   });
+  setSlider(place, Math.round(middle - data.half_mm + 1), Math.round(middle + data.half_mm - 1), first);
   draw(first);
-  figure.append(caption, svg, slider);
+  figure.append(caption, svg, place);
   return figure;
 }

@@ -17,7 +17,7 @@ export class DoseStage extends BaseStage {
     this.setTranslucent(this.structures, ({ structure }) => structure.background);
     this.sources = sourceMarks(data.sources);
     this.scene.add(...this.structures.map((s) => s.object), this.sources);
-    this.frame(new THREE.Vector3(...data.centre), Math.max(0.95 * data.half, 10));
+    this.frame(new THREE.Vector3(...data.centre_mm), Math.max(0.95 * data.half_mm, 10));
   }
 
   /** Adds something else to the picture. */

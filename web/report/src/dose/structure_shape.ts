@@ -14,8 +14,8 @@ export class StructureShape {
 
   constructor(readonly structure: Structure) {
     const geometry = new THREE.BufferGeometry();
-    const { surface, cloud, color } = structure;
-    geometry.setAttribute('position', new THREE.BufferAttribute(surface ? surface.points : cloud, 3));
+    const { surface, cloud_mm: cloud, color } = structure;
+    geometry.setAttribute('position', new THREE.BufferAttribute(surface ? surface.points_mm : cloud, 3));
     if (surface) {
       geometry.setIndex(new THREE.BufferAttribute(surface.triangles, 1));
       geometry.computeVertexNormals();

@@ -23,13 +23,13 @@ export interface CurveFamily {
   at(event: EventMark): number;  // y value at which an event is marked
 }
 
-function buildCurves(box: HTMLElement, data: ReportData, { label, curves, at }: CurveFamily, switches: Switches, moment: Moment, abscissa: 'time' | 'depth'): void {
+function buildCurves(box: HTMLElement, data: ReportData, { label, curves, at }: CurveFamily, switches: Switches, moment: Moment, abscissa: 'time_s' | 'depth_mm'): void {
   const { steps } = data;
-  if (steps.time.length < 2) {
+  if (steps.time_s.length < 2) {
     box.textContent = 'No steps were recorded.';
     return;
   }
-  const byTime = abscissa === 'time';
+  const byTime = abscissa === 'time_s';
   const x = steps[abscissa];
   const turn = turningStep(steps);
   const parts: Series[] = curves.flatMap((curve) => [
@@ -50,14 +50,14 @@ function buildCurves(box: HTMLElement, data: ReportData, { label, curves, at }: 
     tell: (hit) => {
       const step = stepOf(hit);
       return [
-        [`${steps.time[step].toFixed(3)} s, depth ${steps.depth[step].toFixed(1)} mm`],
+        [`${steps.time_s[step].toFixed(3)} s, depth ${steps.depth_mm[step].toFixed(1)} mm`],
         ...curves.map((curve): [string, string, string] => [curve.label, curve.text(curve.values[step]), curve.color]),
       ];
     },
-    choose: (hit) => moment.setTime(steps.time[stepOf(hit)]),
+    choose: (hit) => moment.setTime(steps.time_s[stepOf(hit)]),
     // the frame that the 3D view shows
     over: ({ ctx, bbox, valToPos }) => {
-      const step = nearestStep(steps, moment.frame.time);
+      const step = nearestStep(steps, moment.frame.time_s);
       const left = valToPos(x[step], 'x', true);
       if (left < bbox.left || left > bbox.left + bbox.width) return;
       const unit = devicePixelRatio * lineScale();
@@ -86,6 +86,6 @@ export function buildCurveCharts(legend: HTMLElement, overDepth: HTMLElement, ov
   const switches = new Switches();
   addLegend(legend, family.curves, switches);
   addLegend(legend, [{ label: 'insertion', color: SOFT }, { label: 'retraction', color: SOFT, dashes: WAY_OUT }]);
-  buildCurves(overDepth, data, family, switches, moment, 'depth');
-  buildCurves(overTime, data, family, switches, moment, 'time');
+  buildCurves(overDepth, data, family, switches, moment, 'depth_mm');
+  buildCurves(overTime, data, family, switches, moment, 'time_s');
 }

@@ -7,13 +7,13 @@ import type { CurveFamily } from './curve_charts';
 export function forceCurves({ steps }: ReportData): CurveFamily {
   return {
     label: 'Force [N]',
-    curves: CURVES.map((curve) => ({ ...curve, values: steps[curve.key], text: newtons })),
+    curves: CURVES.map((curve) => ({ ...curve, values: steps[`${curve.key}_N`], text: newtons })),
     at: (event) => event.force_N,
   };
 }
 
 /** The mean shift of the gland from its position before the insertion, in the colours of the forces. */
-export function glandCurves({ steps }: ReportData, { lr, ap, si }: GlandPath): CurveFamily {
+export function glandCurves({ steps }: ReportData, { LR_mm: lr, AP_mm: ap, SI_mm: si }: GlandPath): CurveFamily {
   const curve = (k: number, key: string, values: Float32Array, positive: string, negative: string) => ({
     key, values, color: CURVES[k].color, width: CURVES[k].width, label: `${key} (+ ${positive})`,
     text: (mm: number) => `${Math.abs(mm).toFixed(3)} mm ${mm < 0 ? negative : positive}`,

@@ -9,7 +9,6 @@ import { extent } from '../plots/ticks';
 import { BLUE, colorOf, SKY, VERMILION } from './colors';
 import type { Remeshing, ReproductionData, Run } from './data';
 
-const COLUMNS = { axial: 'axial_N', sagittal: 'sagittal_N', lateral: 'lateral_N' } as const;
 export const FORCES: Look[] = [...CURVES];
 
 /** A time in µs, ms or s, with its unit. */
@@ -80,10 +79,10 @@ export function buildForces(box: HTMLElement, run: Run, runs: Run[]): void {
   const x = iterations(run.curves.axial_N.length);
   new Chart(box, {
     x: { label: 'Iteration', range: [0, x.length - 1], tell: iteration },
-    y: { label: 'Force [N]', range: extent([[0], ...runs.flatMap(({ curves }) => Object.values(COLUMNS).map((column) => curves[column]))], 0.06) },
+    y: { label: 'Force [N]', range: extent([[0], ...runs.flatMap(({ curves }) => CURVES.map(({ key }) => curves[`${key}_N`]))], 0.06) },
     zoom: 'x',
     events: placed(run),
-    series: CURVES.map((curve) => ({ ...curve, x, y: run.curves[COLUMNS[curve.key]] })),
+    series: CURVES.map((curve) => ({ ...curve, x, y: run.curves[`${curve.key}_N`] })),
   });
 }
 

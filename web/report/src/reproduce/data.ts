@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The data that the program writes into the page (reproduction_data.cpp, reproduce_page.cpp).
+import { parseWritten } from '../../../shared/written';
 
 export interface Figure5Row {
   dim: number;
@@ -61,27 +62,6 @@ export interface ReproductionData {
   runs: Run[];
 }
 
-function floats(text: string): Float32Array {
-  const binary = atob(text);
-  const array = new Uint8Array(binary.length);
-  for (let i = 0; i < binary.length; i++) array[i] = binary.charCodeAt(i);
-  return new Float32Array(array.buffer);
-}
-
-type RawRun = Omit<Run, 'curves'> & { curves: Record<keyof Curves, string> };
-
 export function decode(json: string): ReproductionData {
-  const raw = JSON.parse(json) as Omit<ReproductionData, 'runs'> & { runs: RawRun[] };
-  return {
-    ...raw,
-    runs: raw.runs.map((run) => ({
-      ...run,
-      curves: {
-        cumulative_s: floats(run.curves.cumulative_s),
-        axial_N: floats(run.curves.axial_N),
-        sagittal_N: floats(run.curves.sagittal_N),
-        lateral_N: floats(run.curves.lateral_N),
-      },
-    })),
-  };
+  return parseWritten(json, { cumulative_s: Float32Array, axial_N: Float32Array, sagittal_N: Float32Array, lateral_N: Float32Array });
 }

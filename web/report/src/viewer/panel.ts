@@ -2,7 +2,7 @@
 // The interactive view: stage, time slider, and controls of its appearance.
 import type { ReportData } from '../data';
 import type { Moment } from '../moment';
-import { button, element, switchOf } from '../../../shared/dom';
+import { button, element, radioButtons, setSlider, slider, switchOf } from '../../../shared/dom';
 import { colorBar, contactKey, scaleMarks } from '../../../shared/keys';
 import { regionRow, rowName } from '../../../shared/region_look';
 import { openStage } from '../stage_box';
@@ -30,22 +30,6 @@ function contactList(stage: Stage): HTMLElement {
   return row;
 }
 
-/** A choice of one of several; the first is chosen at the start. */
-function radioButtons<Value>(name: string, choices: readonly (readonly [string, Value])[], set: (value: Value) => void): HTMLElement {
-  const box = element('div', 'choice');
-  choices.forEach(([text, value], i) => {
-    const label = element('label');
-    const input = element('input');
-    input.type = 'radio';
-    input.name = name;
-    input.checked = i === 0;
-    input.addEventListener('change', () => set(value));
-    label.append(input, text);
-    box.append(label);
-  });
-  return box;
-}
-
 function colorChoice(stage: Stage, bar: HTMLElement): HTMLElement {
   bar.hidden = true;
   return radioButtons('viewer-color', [['Tissue', false], ['Displacement', true]] as const, (on) => {
@@ -69,15 +53,9 @@ function exaggerationChoice(note: HTMLElement, set: (times: number) => void): HT
 
 function timeControls(moment: Moment): HTMLElement {
   const row = element('div', 'time');
-  const slider = element('input');
-  slider.type = 'range';
-  slider.min = '0';
-  slider.max = String(moment.count - 1);
-  slider.step = '1';
-  slider.setAttribute('aria-label', 'Moment of the run');
-  slider.addEventListener('input', () => {
+  const place = slider('Moment of the run', '1', (index) => {
     stop();
-    moment.set(slider.valueAsNumber);
+    moment.set(index);
   });
   const text = element('output');
   let timer = 0;
@@ -97,13 +75,13 @@ function timeControls(moment: Moment): HTMLElement {
   });
   play.className = 'play';
   const update = () => {
-    slider.value = String(moment.index);
-    const { time, depth, label } = moment.frame;
+    setSlider(place, 0, moment.count - 1, moment.index);
+    const { time_s: time, depth_mm: depth, label } = moment.frame;
     text.textContent = `${time.toFixed(2)} s, depth ${depth.toFixed(1)} mm${label ? ` – ${label}` : ''}`;
   };
   moment.onChange(update);
   update();
-  row.append(play, slider, text);
+  row.append(play, place, text);
   return row;
 }
 
@@ -115,7 +93,7 @@ export function buildViewer(data: ReportData, moment: Moment, root: HTMLElement)
   const note = element('div', 'exaggeration');
   note.hidden = true;
   picture.append(note);
-  const marks = scaleMarks(data.displacementMax);
+  const marks = scaleMarks(data.displacement_max_mm);
   const most = marks[marks.length - 1];
   const side = element('div', 'side');
   const scale = colorBar(marks);

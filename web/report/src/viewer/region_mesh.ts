@@ -37,7 +37,7 @@ export class RegionMesh implements RegionLook {
     densenRim(material, region.background ? 0.06 : 0.6);
     this.object = new THREE.Mesh(geometry, material);
     const p = new THREE.Vector3();
-    for (const node of this.nodes) this.box.expandByPoint(p.fromArray(data.points, 3 * node));
+    for (const node of this.nodes) this.box.expandByPoint(p.fromArray(data.surface.points_mm, 3 * node));
     this.centre = this.box.getCenter(new THREE.Vector3());
     this.object.frustumCulled = false;
     this.visible = true;
@@ -60,7 +60,7 @@ export class RegionMesh implements RegionLook {
    * @param times factor by which the displacement is exaggerated
    */
   show(frame: Frame, most: number, times: number): void {
-    const { points, displacementScale: scale } = this.data;
+    const { surface: { points_mm: points }, displacement_scale_mm: scale } = this.data;
     this.nodes.forEach((node, i) => {
       let square = 0;
       for (let k = 0; k < 3; k++) {

@@ -15,10 +15,10 @@ export class Stage extends BaseStage {
   /** @param box, scaleBar as for BaseStage */
   constructor(data: ReportData, box: HTMLElement, scaleBar: (mm: number, px: number) => void) {
     super(box, scaleBar, { preserveDrawingBuffer: true });  // needed for printing
-    this.regions = data.regions.map((r) => new RegionMesh(data, r));
+    this.regions = data.surface.regions.map((r) => new RegionMesh(data, r));
     this.setTranslucent(this.regions, ({ region }) => region.background);
-    this.needle = new NeedleMesh(data.needleDiameter);
-    this.contacts = new ContactMarks(data.needleDiameter);
+    this.needle = new NeedleMesh(data.needle_diameter_mm);
+    this.contacts = new ContactMarks(data.needle_diameter_mm);
     this.scene.add(...this.regions.map((r) => r.object), this.needle.object, this.contacts.object);
     this.frameOrgans(data);
   }
@@ -26,8 +26,8 @@ export class Stage extends BaseStage {
   /** Shows a frame. @param most displacement [mm] at the end of the colour scale @param times factor of exaggeration */
   show(frame: Frame, most: number, times: number): void {
     for (const region of this.regions) region.show(frame, most, times);
-    this.needle.show(frame.needle);
-    this.contacts.show(frame.needle, frame.contacts);
+    this.needle.show(frame.needle_mm);
+    this.contacts.show(frame.needle_mm, frame.contacts);
     this.draw();
   }
 
@@ -35,15 +35,15 @@ export class Stage extends BaseStage {
   private frameOrgans(data: ReportData): void {
     const box = new THREE.Box3();
     const p = new THREE.Vector3();
-    const foreground = data.regions.filter((r) => !r.background);
-    for (const region of foreground.length > 0 ? foreground : data.regions) {
-      for (const node of region.triangles) box.expandByPoint(p.fromArray(data.points, 3 * node));
+    const foreground = data.surface.regions.filter((r) => !r.background);
+    for (const region of foreground.length > 0 ? foreground : data.surface.regions) {
+      for (const node of region.triangles) box.expandByPoint(p.fromArray(data.surface.points_mm, 3 * node));
     }
-    const entry = new THREE.Vector3(...data.entry);
+    const entry = new THREE.Vector3(...data.entry_mm);
     box.expandByPoint(entry);
     box.expandByPoint(p.copy(entry).addScaledVector(new THREE.Vector3(...data.direction), -12));
     for (const frame of data.frames) {
-      if (frame.needle.length >= 3 && frame.depth > 0) box.expandByPoint(p.fromArray(frame.needle, frame.needle.length - 3));
+      if (frame.needle_mm.length >= 3 && frame.depth_mm > 0) box.expandByPoint(p.fromArray(frame.needle_mm, frame.needle_mm.length - 3));
     }
     const size = box.getSize(new THREE.Vector3());
     this.frame(box.getCenter(p), 0.58 * Math.max(size.z, 0.8 * Math.hypot(size.x, size.y)));

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A made-up patient for work on the page without a server: ellipsoids in a box.
-import type { Patch, Region, SceneText } from '../src/scene';
+// A made-up patient for tests of the page: ellipsoids in a box.
+import type { Patch, Region, SceneText } from 'live/src/scene';
 
 interface Ellipsoid { name: string; label: string; color: string; opacity: number; centre: [number, number, number]; half: [number, number, number] }
 
-export const SKIN_Z = -48;
-export const BODIES: Ellipsoid[] = [
+const SKIN_Z = -48;
+const BODIES: Ellipsoid[] = [
   { name: 'prostate', label: 'Prostate', color: '#0072b2', opacity: 0.5, centre: [0, 0, 0], half: [23, 16, 20] },
   { name: 'bladder', label: 'Bladder', color: '#56b4e9', opacity: 0.4, centre: [0, -8, 42], half: [28, 22, 18] },
   { name: 'rectum', label: 'Rectum', color: '#cc79a7', opacity: 0.45, centre: [0, 29, 4], half: [12, 9, 38] },
@@ -13,9 +13,9 @@ export const BODIES: Ellipsoid[] = [
 ];
 const BOX = { low: [-55, -50, SKIN_Z], high: [55, 50, 66] };
 
-export interface FakePatient { text: SceneText; points: Float32Array; corners: Uint32Array }
+export interface MadeUpPatient { text: SceneText; points: Float32Array; corners: Uint32Array }
 
-export function makePatient(): FakePatient {
+export function makePatient(): MadeUpPatient {
   const points: number[] = [];
   const corners: number[] = [];
   const patches: Patch[] = [];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The server's half of the protocol, for the made-up server and for tests.
-import { SAMPLE_WORDS, type Frame } from '../src/wire';
-import type { FakePatient } from './fake_patient';
+// The server's half of the protocol, for tests.
+import { SAMPLE_WORDS, type Frame } from 'live/src/wire';
+import type { MadeUpPatient } from './made_up_patient';
 
 const FRAME_HEADER = 164;
 
@@ -13,7 +13,7 @@ export function encodeText(kind: number, what: unknown): ArrayBuffer {
   return buffer;
 }
 
-export function encodeScene({ text, points, corners }: FakePatient): ArrayBuffer {
+export function encodeScene({ text, points, corners }: MadeUpPatient): ArrayBuffer {
   let words = JSON.stringify(text);
   while (new TextEncoder().encode(words).length % 4 !== 0) words += ' ';
   const bytes = new TextEncoder().encode(words);
