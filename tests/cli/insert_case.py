@@ -6,6 +6,9 @@ import math
 import re
 from pathlib import Path
 
+import samples
+from program import InFolder
+
 # A small case that runs in one or two seconds.
 FAST = ("--set", "run.dt_ms=4", "--set", "output.pictures=false", "--set", "output.frames_per_s=2")
 SMALL = ("--set", "mesh.nodes=800", *FAST)
@@ -53,14 +56,7 @@ def block_mesh(path, cells=4, size=60.0, names=("tissue", "lump"), last_layer=No
                 group = 2 if all(0 < c < cells - 1 for c in (i, j, k)) else 1
                 for a, b in ((1, 3), (3, 2), (2, 6), (6, 4), (4, 5), (5, 1)):
                     tets.append((group, (corner(0), corner(a), corner(b), corner(7))))
-    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", str(len(names))]
-    lines += [f'3 {k} "{name}"' for k, name in enumerate(names, start=1)]
-    lines += ["$EndPhysicalNames", "$Nodes", str(len(nodes))]
-    lines += [f"{k} {x} {y} {z}" for k, (x, y, z) in enumerate(nodes, start=1)]
-    lines += ["$EndNodes", "$Elements", str(len(tets))]
-    lines += [f"{k} 4 2 {group} {group} " + " ".join(str(v + 1) for v in tet)
-              for k, (group, tet) in enumerate(tets, start=1)]
-    path.write_text("\n".join(lines + ["$EndElements", ""]))
+    samples.gmsh(path, names, nodes, tets)
 
 
 BLOCK = """\
@@ -174,3 +170,13 @@ def check_results(test, folder, summary=None, pictures=False):
     if pictures:
         test.assertIn("data:image/", report)
     return written
+
+
+class Cases(InFolder):
+    """A folder with the scenarios block.toml, of the mesh block.msh, and phantom.toml."""
+
+    def setUp(self):
+        super().setUp()
+        block_mesh(self.folder / "block.msh")
+        self.write("block.toml", BLOCK)
+        self.write("phantom.toml", PHANTOM)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs the built program as a user does. The environment variable STYLET names it."""
+import csv
 import html
 import json
 import os
@@ -42,6 +43,22 @@ class InFolder(unittest.TestCase):
         folder = tempfile.TemporaryDirectory(prefix="stylet-cli-")
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
+
+    def write(self, name, content):
+        """Writes a file: bytes, a text, or anything else as JSON. Returns its name."""
+        if not isinstance(content, bytes):
+            content = (content if isinstance(content, str) else json.dumps(content)).encode()
+        (self.folder / name).write_bytes(content)
+        return name
+
+    def read(self, name):
+        """The JSON in a file."""
+        return json.loads((self.folder / name).read_text(encoding="utf-8"))
+
+    def rows(self, name):
+        """The rows of a CSV file with a header."""
+        with (self.folder / name).open(newline="", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
 
     def succeed(self, *arguments):
         """Runs the program in the folder and checks that it succeeds."""

@@ -12,6 +12,27 @@ def ellipse(z, a, b, points=24):
     return [[a * math.cos(t), b * math.sin(t), z] for t in angles]
 
 
+def structure_set(*structures, **more):
+    """Contours as JSON."""
+    return {"format": "stylet-contours", "version": 1, "units": "mm", "frame": "LPS", **more, "structures": list(structures)}
+
+
+def ellipsoid(name, centre, half, gap, kind=""):
+    """A structure with these half axes and contours `gap` apart [mm]."""
+    count = int(2 * half[2] / gap)
+    contours = []
+    for k in range(count):
+        z = (k - (count - 1) / 2) * gap
+        scale = math.sqrt(1 - (z / half[2]) ** 2)
+        contours.append([[centre[0] + x, centre[1] + y, centre[2] + z]
+                         for x, y, _ in ellipse(z, half[0] * scale, half[1] * scale, points=48)])
+    return {"name": name, "type": kind, "contours": contours}
+
+
+def ball(radius, name="Prostate", at=(0, 0, 0), gap=1.0):
+    return ellipsoid(name, at, (radius,) * 3, gap)
+
+
 def contour_json(path, names=("Prostate",)):
     """Ellipsoidal glands of 40 × 30 × 35 mm side by side, one for each name, with contours every 5 mm."""
     structures = []
@@ -22,8 +43,7 @@ def contour_json(path, names=("Prostate",)):
             contour = ellipse(5.0 * k, 20 * scale, 15 * scale)
             contours.append([[x + 60 * (number - 1), y, z] for x, y, z in contour])
         structures.append({"name": name, "number": number, "type": "ORGAN", "colour": [255, 0, 0], "contours": contours})
-    path.write_text(json.dumps({"format": "stylet-contours", "version": 1, "units": "mm", "frame": "LPS",
-                                "label": "sample", "frame_of_reference": "", "structures": structures}))
+    path.write_text(json.dumps(structure_set(*structures, label="sample", frame_of_reference="")))
 
 
 def nifti_mask(path):
@@ -48,12 +68,8 @@ def nifti_mask(path):
     path.write_bytes(gzip.compress(bytes(header) + bytes(voxels)))
 
 
-def tet_mesh(path, unit=1.0, last_tet=(1, 2, 3, 4), names=("upper", "lower")):
-    """A gmsh MSH 2.2 file with two tetrahedra that share a face, edges of 10 mm in units of `unit` mm, and physical
-    groups 1 and 2."""
-    s = 10 / unit
-    nodes = [(0, 0, -s), (0, 0, 0), (s, 0, 0), (0, s, 0), (0, 0, s)]
-    tets = [(1, tuple(last_tet)), (2, (1, 3, 2, 0))]
+def gmsh(path, names, nodes, tets):
+    """A gmsh MSH 2.2 file. names: of the physical groups; tets: (number of the group, four indices of nodes)."""
     lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", str(len(names))]
     lines += [f'3 {k} "{name}"' for k, name in enumerate(names, start=1)]
     lines += ["$EndPhysicalNames", "$Nodes", str(len(nodes))]
@@ -61,8 +77,16 @@ def tet_mesh(path, unit=1.0, last_tet=(1, 2, 3, 4), names=("upper", "lower")):
     lines += ["$EndNodes", "$Elements", str(len(tets))]
     lines += [f"{k} 4 2 {group} {group} " + " ".join(str(n + 1) for n in tet)
               for k, (group, tet) in enumerate(tets, start=1)]
-    lines += ["$EndElements", ""]
-    path.write_text("\n".join(lines))
+    path.write_text("\n".join(lines + ["$EndElements", ""]))
+
+
+def tet_mesh(path, unit=1.0, last_tet=(1, 2, 3, 4), names=("upper", "lower")):
+    """A gmsh MSH 2.2 file with two tetrahedra that share a face, edges of 10 mm in units of `unit` mm, and physical
+    groups 1 and 2."""
+    s = 10 / unit
+    nodes = [(0, 0, -s), (0, 0, 0), (s, 0, 0), (0, s, 0), (0, 0, s)]
+    tets = [(1, tuple(last_tet)), (2, (1, 3, 2, 0))]
+    gmsh(path, names, nodes, tets)
 
 
 def stl_surface(path):

@@ -69,7 +69,7 @@ class Streams(InFolder):
     def test_json_to_a_file_leaves_the_table_on_standard_output(self):
         done = self.succeed("info", "gland.json", "--json", "deep/down/info.json")
         self.assertIn("Prostate", done.stdout)
-        self.assertEqual(json.loads((self.folder / "deep/down/info.json").read_text())["file"], "gland.json")
+        self.assertEqual(self.read("deep/down/info.json")["file"], "gland.json")
         self.assertEqual([p.name for p in (self.folder / "deep/down").iterdir()], ["info.json"], "no temporary is left")
 
     def test_json_may_go_to_a_device(self):

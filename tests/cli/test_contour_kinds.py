@@ -1,20 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Contours that are drawn or written in an unusual way have the same, right volume in `stylet info`, `mesh` and `dose`,
-and what is unusual about them is said.
-
-The files are not part of the repository: their folder is $STYLET_SHARED_DATA, by default ../shared/data beside it.
-Without one the tests are skipped (exit status 77)."""
+and what is unusual about them is said."""
 import json
-import os
-import sys
-import unittest
-from pathlib import Path
 
 from program import InFolder
-
-ROOT = Path(__file__).resolve().parents[2]
-DATA = Path(os.environ.get("STYLET_SHARED_DATA") or ROOT.parent / "shared" / "data") / "found3"
+from shared_data import FOUND, run_tests_with
 
 # File, volume of the gland [cc], its tolerance [%], and words of the note.
 KINDS = (("k01_twice_one_slice.dcm", 32.40, 0.2, "occurs twice"),
@@ -45,17 +36,17 @@ class ContourKinds(InFolder):
                         "# template_origin_mm: 0 0.2 20\nhole,retraction_mm,train\nB4,0,S-1-S-1-S-1-S\n", encoding="utf-8")
         for file, volume, tolerance, words in KINDS:
             with self.subTest(file=file):
-                info = self.json_of("info", DATA / file)
+                info = self.json_of("info", FOUND / file)
                 glands = [s for s in info["structures"] if s["taken_as"] == "prostate"]
                 self.assertEqual(len(glands), 1)
                 self.near(glands[0]["volume_cc"], volume, tolerance)
                 self.assertIn(words, " ".join(info["notes"]))
                 # The gland alone is meshed and sampled; the other structures would take most of the time.
                 skipped = [w for s in info["structures"] if s["taken_as"] != "prostate" for w in ("--skip", s["name"])]
-                mesh = self.json_of("mesh", DATA / file, "-o", "m.vtu", "--nodes", "300", "--quiet", *skipped)
+                mesh = self.json_of("mesh", FOUND / file, "-o", "m.vtu", "--nodes", "300", "--quiet", *skipped)
                 self.near(mesh["regions"]["prostate"]["structure_volume_cc"], volume, tolerance)
                 self.assertIn(words, " ".join(mesh["notes"]))
-                done = self.succeed("dose", plan, "--structures", DATA / file, "--grid", "10",
+                done = self.succeed("dose", plan, "--structures", FOUND / file, "--grid", "10",
                                     "--ignore-frame-of-reference", "-o", "dose", *skipped)
                 self.assertIn(words, done.stderr)
                 dose = json.loads((self.folder / "dose" / "dose.json").read_text())
@@ -68,7 +59,4 @@ class ContourKinds(InFolder):
 
 
 if __name__ == "__main__":
-    if not DATA.is_dir():
-        print(f"skipped: there is no folder {DATA}; STYLET_SHARED_DATA may name another one")
-        sys.exit(77)
-    unittest.main()
+    run_tests_with(FOUND)

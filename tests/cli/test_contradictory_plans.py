@@ -3,25 +3,11 @@
 """stylet dose with plans that contradict themselves, made from plans of our own: each is refused, or warned of on the
 terminal, in dose.json and on the page."""
 import copy
-import json
-import math
 import subprocess
 import unittest
 
 from program import InFolder, page_text, run
-
-
-def ball(radius, name="Prostate", at=(0, 0, 0)):
-    contours = []
-    for k in range(-int(radius), int(radius) + 1, 2):
-        ring = math.sqrt(max(0.01, radius**2 - k**2))
-        contours.append([[at[0] + ring * math.cos(t * math.pi / 20), at[1] + ring * math.sin(t * math.pi / 20), at[2] + k]
-                         for t in range(40)])
-    return {"name": name, "contours": contours}
-
-
-def structures(*balls):
-    return {"format": "stylet-contours", "version": 1, "units": "mm", "frame": "LPS", "structures": list(balls)}
+from samples import ball, structure_set
 
 
 GRID = [(x, y, z) for x in (-11, 0, 11) for y in (-11, 0, 11) for z in (-10, 0, 10)]
@@ -185,10 +171,10 @@ DICOM_CASES = [
     ("a place that is missing", ldr, ["-e", CHANNEL + "(300a,02d0)[1].(300a,02d4)"], (), "300A,02D4"),
 ]
 TARGET_CASES = [
-    ("no target among the structures", structures(ball(15, "Rectum")), "target"),
-    ("a target of a tenth of a cc", structures(ball(3), ball(15, "Urethra")), "target"),
-    ("a target 25 mm away", structures(ball(15, at=(0, 0, 48))), "distance from the target"),
-    ("a target without volume", structures({"name": "Prostate", "contours": ball(15)["contours"][:1]}), "volume"),
+    ("no target among the structures", structure_set(ball(15, "Rectum")), "target"),
+    ("a target of a tenth of a cc", structure_set(ball(3), ball(15, "Urethra")), "target"),
+    ("a target 25 mm away", structure_set(ball(15, at=(0, 0, 48))), "distance from the target"),
+    ("a target without volume", structure_set({"name": "Prostate", "contours": ball(15)["contours"][:1]}), "volume"),
 ]
 CONTROLS = [("seeds (JSON)", ldr), ("afterloader (JSON)", hdr)]
 
@@ -196,11 +182,8 @@ CONTROLS = [("seeds (JSON)", ldr), ("afterloader (JSON)", hdr)]
 class ContradictoryPlans(InFolder):
     def setUp(self):
         super().setUp()
-        self.write("rs.json", structures(ball(15)))
+        self.write("rs.json", structure_set(ball(15)))
         self.number = 0
-
-    def write(self, name, content):
-        (self.folder / name).write_text(content if isinstance(content, str) else json.dumps(content))
 
     def dose(self, plan, *arguments, rs="rs.json"):
         self.number += 1
@@ -217,7 +200,7 @@ class ContradictoryPlans(InFolder):
                 self.assertFalse((self.folder / out).exists())
                 return
             self.assertEqual(done.returncode, 0, done.stderr)
-            warnings = json.loads((self.folder / out / "dose.json").read_text())["warnings"]
+            warnings = self.read(f"{out}/dose.json")["warnings"]
             page = page_text(self.folder / out / "report.html")
             self.assertTrue(any(says.lower() in w.lower() for w in warnings), f"silent; warnings are {warnings}")
             for warning in warnings:
@@ -228,7 +211,7 @@ class ContradictoryPlans(InFolder):
         out, done = self.dose(plan, *arguments)
         with self.subTest(name):
             self.assertEqual(done.returncode, 0, done.stderr)
-            self.assertEqual(json.loads((self.folder / out / "dose.json").read_text())["warnings"], [])
+            self.assertEqual(self.read(f"{out}/dose.json")["warnings"], [])
             self.assertNotIn("warning", done.stderr)
         return out
 
@@ -263,7 +246,7 @@ class ContradictoryPlans(InFolder):
             self.assertEqual(done.returncode, 0, done.stderr)
             made[plan] = (self.folder / out / "plan.dcm").read_bytes()
         for name, plan, changes, arguments, says in DICOM_CASES:
-            (self.folder / "plan.dcm").write_bytes(made[plan])
+            self.write("plan.dcm", made[plan])
             if changes:
                 subprocess.run(["dcmodify", "-nb", *changes, "plan.dcm"], cwd=self.folder, check=True,
                                capture_output=True)

@@ -93,7 +93,7 @@ class Archive(InFolder):
     def dose(self, *arguments, plan=PLAN, out="out"):
         """Runs `stylet dose` on a file, or on the text of a CSV plan; returns plan, dose and what the terminal says."""
         if isinstance(plan, str):
-            (self.folder / "plan.csv").write_text(HEAD + plan)
+            self.write("plan.csv", HEAD + plan)
             plan = "plan.csv"
         done = self.succeed("dose", plan, *arguments, "--grid", "8", "-o", out)
         files = [pydicom.dcmread(self.folder / out / name) for name in ("plan.dcm", "dose.dcm")]
@@ -198,7 +198,7 @@ class Archive(InFolder):
 
     def test_another_frame_of_reference_is_refused(self):
         self.patient_file(PATIENTS[0])
-        (self.folder / "framed.csv").write_text(HEAD + "# frame_of_reference: 1.2.3\n" + PLAN)
+        self.write("framed.csv", HEAD + "# frame_of_reference: 1.2.3\n" + PLAN)
         arguments = ("dose", "framed.csv", "--patient-from", "patient.dcm", "--grid", "8", "-o", "out")
         self.refuse(*arguments, says=["1.2.840.99.2", "1.2.3"])
         done = self.succeed(*arguments, "--ignore-frame-of-reference")
@@ -224,7 +224,7 @@ class Archive(InFolder):
     def test_a_name_outside_its_character_set_is_said(self):
         self.patient_file(identity("ISO_IR 100", "Müller", ""))
         data = (self.folder / "patient.dcm").read_bytes().replace(b"ISO_IR 100", b"ISO_IR 6  ")
-        (self.folder / "patient.dcm").write_bytes(data)
+        self.write("patient.dcm", data)
         plan, _, said = self.dose("--patient-from", "patient.dcm")
         self.assertEqual(str(plan.PatientName), "Müller")
         self.assertIn("not in the file's character set", said)
@@ -241,13 +241,13 @@ class Archive(InFolder):
         self.assertEqual(plan.RTPlanDate, "20240109")
         self.assertIn("decay factor between them is 0.9216", said)
         self.assertTrue(re.search("without decay", said))
-        (self.folder / "bad.csv").write_text(HEAD + "# strength_date: 31.1.2024\n" + PLAN)
+        self.write("bad.csv", HEAD + "# strength_date: 31.1.2024\n" + PLAN)
         self.refuse("dose", "bad.csv", "-o", "bad", says=["strength_date", "31.1.2024", "2024-01-31"])
 
     def test_dwell_positions_stand_at_their_distance_from_the_tip(self):
         rows = "x_mm,y_mm,z_mm,ax,ay,az,dwell_s,needle\n" + "".join(f"0,0,{z},0,0,1,3,Ä1\n" for z in (-20, -15, -5, 0))
         head = "# source: ir192_mhdr_v2\n# implant: temporary\n# strength_U: 40000\n"
-        (self.folder / "hdr.csv").write_text(head + rows)
+        self.write("hdr.csv", head + rows)
         plan, _, _ = self.dose(plan=self.folder / "hdr.csv")
         channel = plan.ApplicationSetupSequence[0].ChannelSequence[0]
         points = channel.BrachyControlPointSequence

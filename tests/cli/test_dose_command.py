@@ -1,27 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """stylet dose: a plan and its structures to dose, figures and files."""
-import json
 import math
 import unittest
 
 from program import InFolder
-
-
-def ball(radius, name, planes_mm=1.0):
-    """A structure: contours of a ball around the origin."""
-    contours = []
-    z = -math.floor(radius) + planes_mm / 2
-    while z < radius:
-        ring = math.sqrt(radius**2 - z**2)
-        contours.append([[ring * math.cos(k * math.pi / 40), ring * math.sin(k * math.pi / 40), z] for k in range(80)])
-        z += planes_mm
-    return {"name": name, "contours": contours}
-
-
-def structures(*balls, frame=""):
-    return {"format": "stylet-contours", "version": 1, "units": "mm", "frame": "LPS", "frame_of_reference": frame,
-            "structures": list(balls)}
+from samples import ball, structure_set
 
 
 def plan(seeds, **more):
@@ -33,12 +17,9 @@ GRID = [(x, y, z) for x in (-8, 0, 8) for y in (-8, 0, 8) for z in (-9, 0, 9)]
 
 
 class Dose(InFolder):
-    def write(self, name, content):
-        (self.folder / name).write_text(content if isinstance(content, str) else json.dumps(content))
-
     def case(self):
         self.write("plan.json", plan(GRID, source="i125_6711", prescription_Gy=145))
-        self.write("rs.json", structures(ball(14, "Prostate"), ball(3, "Urethra")))
+        self.write("rs.json", structure_set(ball(14), ball(3, "Urethra")))
 
     def test_a_point_at_10_mm_from_a_seed_has_the_dose_that_one_computes_by_hand(self):
         self.write("plan.json", plan([(0, 0, 0)]))
@@ -55,7 +36,7 @@ class Dose(InFolder):
         dose = self.json_of("dose", "plan.json", "--structures", "rs.json", "-o", "out")
         files = {p.name for p in (self.folder / "out").iterdir()}
         self.assertEqual(files, {"report.html", "dose.json", "dvh.csv", "dose.nrrd", "plan.dcm", "dose.dcm"})
-        self.assertEqual(dose, json.loads((self.folder / "out/dose.json").read_text()))
+        self.assertEqual(dose, self.read("out/dose.json"))
         again = self.json_of("dose", "out/plan.dcm", "--structures", "rs.json", "--source", "i125_6711", "--compare",
                              "out/dose.dcm", "-o", "again", "--ignore-frame-of-reference")
         self.assertEqual(again["seeds"], 27)
@@ -111,7 +92,7 @@ class Dose(InFolder):
         self.write("far.json", plan([(300, 0, 0)], source="i125_6711"))
         self.refuse("dose", "far.json", "--structures", "rs.json", "-o", "new", says=["away from the target", "other patient"])
         self.write("a.json", plan(GRID, source="i125_6711", frame_of_reference="1.2.3"))
-        self.write("b.json", structures(ball(14, "Prostate"), frame="1.2.4"))
+        self.write("b.json", structure_set(ball(14), frame_of_reference="1.2.4"))
         self.refuse("dose", "a.json", "--structures", "b.json", "-o", "new", says=["frame of reference", "1.2.3", "1.2.4"])
         self.succeed("dose", "a.json", "--structures", "b.json", "-o", "out", "--ignore-frame-of-reference")
         self.refuse("dose", "plan.json", "--phi-an", 0.9, "-o", "new", says=["line2d"])
@@ -121,7 +102,7 @@ class Dose(InFolder):
     def test_a_grid_that_does_not_hold_an_organ_is_warned_of(self):
         self.case()
         self.succeed("dose", "plan.json", "-o", "small", "--grid", 2)
-        self.write("large.json", structures(ball(45, "Prostate", 3.0)))
+        self.write("large.json", structure_set(ball(45, gap=3.0)))
         dose = self.json_of("dose", "plan.json", "--structures", "large.json", "--compare", "small/dose.dcm", "-o", "out",
                             "--ignore-frame-of-reference")
         self.assertLess(dose["dvh"][0]["covered_by_grid_percent"], 50)

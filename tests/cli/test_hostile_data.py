@@ -1,19 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Files that have crashed or hung programs are refused with one line and within little processor time, child processes
-included.
-
-They are not part of the repository: their folder is hostile/ in $STYLET_SHARED_DATA, by default ../shared/data beside
-it. Without one the tests are skipped (exit status 77)."""
-import os
+included."""
 import resource
-import sys
-import unittest
-from pathlib import Path
 
 from program import InFolder
+from shared_data import SHARED, run_tests_with
 
-DATA = Path(os.environ.get("STYLET_SHARED_DATA") or Path(__file__).resolve().parents[3] / "shared" / "data") / "hostile"
+DATA = SHARED / "hostile"
 MOST_SECONDS = 10
 
 
@@ -34,7 +28,4 @@ class HostileFiles(InFolder):
 
 
 if __name__ == "__main__":
-    if not DATA.is_dir():
-        print(f"Skipped: no hostile files in {DATA}; name the folder above with STYLET_SHARED_DATA.")
-        sys.exit(77)
-    unittest.main()
+    run_tests_with(DATA)

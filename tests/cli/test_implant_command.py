@@ -2,10 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """stylet implant: a scenario with a plan to seeds at rest, their errors, and the dose."""
 import contextlib
-import csv
 import importlib.util
 import io
-import json
 import unittest
 from pathlib import Path
 
@@ -18,7 +16,7 @@ source = "phantom"
 [fixed]
 outer = "sides"
 [mesh]
-nodes = 1500
+nodes = 800
 [plan]
 file = "plan.csv"
 [procedure]
@@ -56,8 +54,8 @@ x_mm,y_mm,z_mm,needle,dwell_s
 
 class TemporaryImplant(InFolder):
     def case(self, plan=HDR):
-        (self.folder / "case.toml").write_text(SCENARIO)
-        (self.folder / "plan.csv").write_text(plan)
+        self.write("case.toml", SCENARIO)
+        self.write("plan.csv", plan)
 
     def test_dwell_positions_move_between_planning_and_delivery_and_keep_their_times(self):
         self.case()
@@ -65,8 +63,8 @@ class TemporaryImplant(InFolder):
         self.assertIn("2 catheters, 6 dwell positions", done.stdout)
         self.assertIn("planning to delivery", done.stdout)
         self.assertNotIn("seed", done.stdout)
-        result = json.loads((self.folder / "out/summary.json").read_text())
-        self.assertEqual(result, json.loads((self.folder / "json").read_text()))
+        result = self.read("out/summary.json")
+        self.assertEqual(result, self.read("json"))
         implant = result["implant"]
         self.assertNotIn("seeds", implant)
         self.assertEqual([catheter["name"] for catheter in implant["catheters"]], ["1", "2"])
@@ -84,8 +82,7 @@ class TemporaryImplant(InFolder):
         for dvh in (implant["delivered_dvh"], implant["at_planning"]["delivered_dvh"]):
             self.assertEqual([row["structure"] for row in dvh], [row["structure"] for row in implant["planned_dvh"]])
         self.assertEqual(implant["goals"], [])
-        with (self.folder / "out/seeds.csv").open(newline="") as file:
-            rows = list(csv.DictReader(file))
+        rows = self.rows("out/seeds.csv")
         self.assertEqual([float(row["dwell_s"]) for row in rows], [20, 30, 20, 20, 30, 0])
         self.assertAlmostEqual(float(rows[1]["delivery_z_mm"]), implant["dwell_positions"][1]["delivery_mm"][2], places=3)
         report = (self.folder / "out/report.html").read_text()
@@ -118,8 +115,8 @@ class TemporaryImplant(InFolder):
 
 class Implant(InFolder):
     def case(self, scenario=SCENARIO, plan=PLAN):
-        (self.folder / "case.toml").write_text(scenario)
-        (self.folder / "plan.csv").write_text(plan)
+        self.write("case.toml", scenario)
+        self.write("plan.csv", plan)
 
     def test_seeds_have_reasons_that_add_up_to_their_errors_and_are_matched_with_those_found_on_imaging(self):
         self.case()
@@ -138,9 +135,8 @@ class Implant(InFolder):
         self.assertEqual(len(implant["planned_dvh"]), len(implant["delivered_dvh"]))
         self.assertEqual(len(implant["goals"]), 8)
         # The files say the same.
-        self.assertEqual(result, json.loads((self.folder / "out/summary.json").read_text()))
-        with (self.folder / "out/seeds.csv").open(newline="") as file:
-            rows = list(csv.DictReader(file))
+        self.assertEqual(result, self.read("out/summary.json"))
+        rows = self.rows("out/seeds.csv")
         self.assertEqual([row["needle"] for row in rows], [seed["needle"] for seed in implant["seeds"]])
         self.assertAlmostEqual(float(rows[1]["rest_z_mm"]), implant["seeds"][1]["rest_mm"][2], places=3)
         self.assertIn("two needles", (self.folder / "out/report.html").read_text())
@@ -170,7 +166,7 @@ class Implant(InFolder):
         self.refuse("serve", "out/run.h5", says=["record of an implant"])
         self.run_the_example_of_the_documents(implant)
         whole = (self.folder / "out/run.h5").read_bytes()
-        (self.folder / "part.h5").write_bytes(whole[:len(whole) // 2])
+        self.write("part.h5", whole[:len(whole) // 2])
         self.refuse("info", "part.h5", says=["run.h5 that stylet wrote"])
 
     def run_the_example_of_the_documents(self, implant):
@@ -191,10 +187,6 @@ class Implant(InFolder):
         self.assertEqual(names["dose"].ndim, 3)
         names["run"].close()
 
-    def found(self, text, name="found_seeds.csv"):
-        (self.folder / name).write_text(text)
-        return name
-
     def match_found_seeds(self, first):
         """Implants again, with seeds found near those that the first run has in the folder out."""
         self.assertIsNone(first["found"])
@@ -205,13 +197,13 @@ class Implant(InFolder):
         places = [[x + dx for x, dx in zip(seed["rest_mm"], shift)] for seed in first["seeds"]]
         away = [places[0][0], places[0][1] + 70.0, places[0][2]]
         rows = [places[4], places[2], away, places[0], places[3]]
-        self.found("x_mm,y_mm,z_mm\n" + "".join("{},{},{}\n".format(*row) for row in rows))
+        self.write("found_seeds.csv", "x_mm,y_mm,z_mm\n" + "".join("{},{},{}\n".format(*row) for row in rows))
         done = self.succeed("implant", "case.toml", "-o", "out", "--found", "found_seeds.csv", "--json", "json")
         self.assertIn("Found on imaging", done.stdout)
         self.assertIn("(no. 2 of the plan)", done.stdout)
         self.assertIn("found_seeds.csv, line 4", done.stdout)
-        result = json.loads((self.folder / "out/summary.json").read_text())
-        self.assertEqual(result, json.loads((self.folder / "json").read_text()))
+        result = self.read("out/summary.json")
+        self.assertEqual(result, self.read("json"))
         implant, found = result["implant"], result["implant"]["found"]
         self.assertEqual((found["found"], found["matched"], found["not_found"]), (5, 4, [2]))
         self.assertEqual([seed["found_number"] for seed in found["not_dropped"]], [3])
@@ -233,39 +225,27 @@ class Implant(InFolder):
                          [row["structure"] for row in implant["delivered_dvh"]])
         self.assertIn("found_value", implant["goals"][0])
         self.assertAlmostEqual(implant["goals"][0]["value"], first["goals"][0]["value"], places=6)
-        dose = json.loads((self.folder / "out/found/dose.json").read_text())
+        dose = self.read("out/found/dose.json")
         self.assertEqual(dose["dvh"], implant["found_dvh"])
         self.assertEqual(dose["seeds"], 5)
-        with (self.folder / "out/found.csv").open(newline="") as file:
-            table = list(csv.DictReader(file))
+        table = self.rows("out/found.csv")
         self.assertEqual([row["found"] for row in table], ["4", "", "2", "5", "1", "3"])
         self.assertAlmostEqual(float(table[5]["found_y_mm"]), away[1], places=3)
         self.assertIn('id="found"', (self.folder / "out/report.html").read_text())
 
     def test_found_seeds_that_cannot_be_right_are_refused_before_anything_is_computed(self):
         self.case()
-
-        def refuse_found(text, *says):
-            self.refuse("implant", "case.toml", "-o", "out", "--found", self.found(text), says=says)
-
         head = "x_mm,y_mm,z_mm\n"
-        self.refuse("implant", "case.toml", "-o", "out", "--found", "none.csv", says=["none.csv", "no such file"])
-        self.refuse("implant", "case.toml", "-o", "out", "--found", "case.toml", says=["case.toml"])
-        refuse_found("", "found_seeds.csv", "empty")
-        refuse_found(head, "found_seeds.csv", "no rows")
-        refuse_found("x_mm,y_mm\n1,2\n", "found_seeds.csv", "z_mm", "missing")
-        refuse_found("x_mm,y_mm,z_cm\n1,2,3\n", "line 1", "z_cm", "Did you mean 'z_mm'?")
-        refuse_found(head + "1,2,3\n1,nan,3\n", "line 3", "y_mm", "'nan'")
-        refuse_found(head + "1,2\n", "line 2", "2 fields")
-        refuse_found("x_mm,y_mm,z_mm,ax,ay,az\n1,2,3,0,0,0\n", "line 2", "no length")
-        refuse_found(head + "0,0,20\n0,4000,0\n5,0,20\n", "line 3", "4000.0", "every planned seed", "register")
-        refuse_found(head + "0,90,20\n0,95,20\n5,0,20\n", "line 2", "2 of 3 seeds", "30 mm", "register")
-        refuse_found(head + "0,0,20\n" * 11, "11 seeds", "5 are planned")
-        self.found(head + "0,0,20\n")
-        self.refuse("implant", "case.toml", "-o", "out", "--compensate", "1", "--found", "found_seeds.csv",
-                    says=["compensation"])
-        self.found(head + "0,0,20\n", "found.csv")
-        self.refuse("implant", "case.toml", "-o", ".", "--found", "found.csv", says=["found.csv", "replace this file"])
+        implant = ("implant", "case.toml", "-o")
+        self.refuse(*implant, "out", "--found", "none.csv", says=["none.csv", "no such file"])
+        self.refuse(*implant, "out", "--found", "case.toml", says=["case.toml"])
+        for text, *says in ((head + "1,2,3\n1,nan,3\n", "line 3", "y_mm", "'nan'"),
+                            ("x_mm,y_mm,z_cm\n1,2,3\n", "line 1", "z_cm", "Did you mean 'z_mm'?"),
+                            (head + "0,90,20\n0,95,20\n5,0,20\n", "line 2", "2 of 3 seeds", "30 mm", "register")):
+            self.refuse(*implant, "out", "--found", self.write("found.csv", text), says=["found.csv", *says])
+        self.write("found.csv", head + "0,0,20\n")
+        self.refuse(*implant, "out", "--compensate", "1", "--found", "found.csv", says=["compensation"])
+        self.refuse(*implant, ".", "--found", "found.csv", says=["found.csv", "replace this file"])
 
     def test_what_cannot_be_implanted_is_refused_before_anything_is_computed(self):
         self.case(scenario=SCENARIO.replace('[plan]\nfile = "plan.csv"', '[[insertion]]\nhole = "D4"'))

@@ -28,11 +28,11 @@ class Info(InFolder):
 
     def test_contour_inside_another_is_a_hole(self):
         samples.contour_json(self.folder / "gland.json")
-        data = json.loads((self.folder / "gland.json").read_text())
+        data = self.read("gland.json")
         solid = self.json_of("info", "gland.json")["structures"][0]["volume_cc"]
         contours = data["structures"][0]["contours"]
         contours += [[[x / 2, y / 2, z] for x, y, z in contour] for contour in contours]
-        (self.folder / "hollow.json").write_text(json.dumps(data))
+        self.write("hollow.json", json.dumps(data))
         hollow = self.json_of("info", "hollow.json")["structures"][0]["volume_cc"]
         self.assertAlmostEqual(hollow, 0.75 * solid, places=6)
 

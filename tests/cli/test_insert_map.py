@@ -20,7 +20,7 @@ centre_mm = [12.5, 2.5]
 class Map(InFolder):
     def setUp(self):
         super().setUp()
-        (self.folder / "case.toml").write_text(PHANTOM + FEW_HOLES)
+        self.write("case.toml", PHANTOM + FEW_HOLES)
 
     def insert(self, *options):
         done = self.succeed("insert", "case.toml", *SMALL, *options)
@@ -28,7 +28,7 @@ class Map(InFolder):
 
     def test_each_row_is_what_an_insertion_through_that_hole_comes_to(self):
         printed = self.insert("--map", "-o", "out", "--json", "out.json")
-        result = json.loads((self.folder / "out.json").read_text())
+        result = self.read("out.json")
         summary = json.loads((self.folder / "out" / "summary.json").read_text())
         holes = {row["hole"]: row for row in result["map"]["holes"]}
         self.assertEqual(list(holes), ["E4", "e4", "E3.5", "e3.5"])
@@ -70,14 +70,14 @@ class Map(InFolder):
         self.refuse("insert", "out/run.h5", "--map", "-o", "again", says=["out/run.h5", "recording", "--map"])
 
     def test_what_no_map_can_be_made_of(self):
-        (self.folder / "two.toml").write_text(PHANTOM + '[[insertion]]\nhole = "c3.5"\n')
+        self.write("two.toml", PHANTOM + '[[insertion]]\nhole = "c3.5"\n')
         self.refuse("insert", "two.toml", "--map", "-o", "no", *SMALL,
                     says=["two.toml, [[insertion]]", "2 insertions", "Keep only the"])
         block_mesh(self.folder / "block.msh")
-        (self.folder / "block.toml").write_text(BLOCK)
+        self.write("block.toml", BLOCK)
         self.refuse("insert", "block.toml", "--map", "-o", "no",
                     says=["block.toml, insertion[0].entry_mm", "does not go through a hole", 'hole = "D4"'])
-        (self.folder / "held.toml").write_text(BLOCK.replace("entry_mm = [31, 32, -10]", 'hole = "D4"'))
+        self.write("held.toml", BLOCK.replace("entry_mm = [31, 32, -10]", 'hole = "D4"'))
         self.refuse("insert", "held.toml", "--map", "-o", "no",
                     says=["held.toml", "no target", "tissue, lump", "patient.regions"])
         self.assertFalse((self.folder / "no").exists())

@@ -13,7 +13,7 @@ PROBE = ("--set", 'probe.kind="biplane"', "--set", "probe.lift_mm=8", "--set", "
 
 class ProbeInTheRectum(InFolder):
     def insert(self, *settings):
-        (self.folder / "probe.toml").write_text(PHANTOM)
+        self.write("probe.toml", PHANTOM)
         said = self.succeed("insert", "probe.toml", "-o", "out", *SMALL, *settings)
         out = self.folder / "out"
         return (said.stdout, json.loads((out / "summary.json").read_text()), page_text(out / "report.html"))

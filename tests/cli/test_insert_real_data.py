@@ -1,25 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A scenario of ten lines is enough for a real patient or a mesh of another program.
-
-The files are not part of the repository: their folder is $STYLET_SHARED_DATA, by default ../shared/data beside it.
-Without one the tests are skipped (exit status 77)."""
-import os
-import sys
-import unittest
-from pathlib import Path
-
+"""A scenario of ten lines is enough for a real patient or a mesh of another program."""
 from insert_case import FAST, check_results, forces, kinds
 from program import InFolder
+from shared_data import SHARED, run_tests_with
 
-DATA = Path(os.environ.get("STYLET_SHARED_DATA") or Path(__file__).resolve().parents[3] / "shared" / "data")
 
 
 class RealPatients(InFolder):
     def insert(self, source, lines, *options):
-        scenario = f'[patient]\nsource = "{DATA / source}"\n' + lines
+        scenario = f'[patient]\nsource = "{SHARED / source}"\n' + lines
         self.assertLessEqual(len(scenario.splitlines()), 10)
-        (self.folder / "case.toml").write_text(scenario)
+        self.write("case.toml", scenario)
         done = self.succeed("insert", "case.toml", "-o", "out", *FAST, *options)
         summary = check_results(self, self.folder / "out")
         return summary, done
@@ -95,7 +87,4 @@ depth_mm = 50
 
 
 if __name__ == "__main__":
-    if not DATA.is_dir():
-        print(f"Skipped: no real data in {DATA}; name its folder with STYLET_SHARED_DATA.")
-        sys.exit(77)
-    unittest.main()
+    run_tests_with(SHARED)

@@ -3,12 +3,11 @@
 """Masks as used in clinics: layers, named zones, one volume of several; and files that no program should open."""
 import gzip
 import os
-import socket
 import struct
 import unittest
 
 import samples
-from program import InFolder, run
+from program import InFolder
 
 
 def ball(centre, radius, size=(40, 40, 24), spacing=(1.5, 1.5, 2.5)):
@@ -52,15 +51,6 @@ class LayeredSegmentation(InFolder):
         self.assertTrue(any("the smaller segment" in note for note in report["notes"]), report["notes"])
 
 
-    def test_a_segment_that_is_skipped_leaves_its_voxels_to_what_lies_below(self):
-        report = self.json_of("mesh", "case.seg.nrrd", "-o", "m.vtu", "--nodes", "1500", "--skip", "transition",
-                              "--skip", "urethra")
-        self.assertNotIn("transition_zone", report["regions"])
-        whole = 4 / 3 * 3.1416 * 2.0 ** 3
-        self.assertAlmostEqual(report["regions"]["peripheral_zone"]["input_volume_cc"], whole, delta=0.05 * whole)
-        self.assertTrue(any("named in [patient] skip): 'transition', 'Urethra'" in note for note in report["notes"]),
-                        report["notes"])
-
 
 class SeveralVolumes(InFolder):
     def setUp(self):
@@ -70,26 +60,17 @@ class SeveralVolumes(InFolder):
         struct.pack_into("<h", raw, 40, 4)
         struct.pack_into("<h", raw, 48, 2)
         voxels = raw[352:]
-        (self.folder / "two.nii.gz").write_bytes(gzip.compress(bytes(raw[:352]) + bytes(len(voxels)) + bytes(voxels)))
+        self.write("two.nii.gz", gzip.compress(bytes(raw[:352]) + bytes(len(voxels)) + bytes(voxels)))
 
-    def test_the_refusal_says_how_to_choose_one(self):
+    def test_one_is_chosen_by_an_option_or_in_a_scenario(self):
         self.refuse("info", "two.nii.gz", says=["two.nii.gz", "2 volumes", "volume = 1 below [patient]", "--volume 1"])
-        self.refuse("mesh", "two.nii.gz", "-o", "m.vtu", "--volume", "3", says=["two.nii.gz", "volume 3", "holds 2"])
-
-    def test_the_chosen_one_is_read(self):
         info = self.json_of("info", "two.nii.gz", "--volume", "2")
         self.assertEqual(info["labels"], self.json_of("info", "one.nii.gz")["labels"])
-        self.refuse("info", "two.nii.gz", "--volume", "1", says=["every voxel is 0"])
-
-    def test_a_scenario_names_it(self):
-        (self.folder / "s.toml").write_text('[patient]\nsource = "two.nii.gz"\n[patient.regions]\n1 = "prostate"\n'
-                                            '[mesh]\nnodes = 1500\n[[insertion]]\nentry_mm = [10, 10, -5]\n'
-                                            'target_mm = [10, 10, 10]\n')
-        self.refuse("prepare", "s.toml", "-o", "m.stylet", says=["two.nii.gz", "volume = 1 below [patient]"])
+        self.refuse("mesh", "two.nii.gz", "-o", "m.vtu", "--volume", "3", says=["two.nii.gz", "volume 3", "holds 2"])
+        self.write("s.toml", '[patient]\nsource = "two.nii.gz"\n[patient.regions]\n1 = "prostate"\n[mesh]\nnodes = 1500\n'
+                             '[[insertion]]\nentry_mm = [10, 10, -5]\ntarget_mm = [10, 10, 10]\n')
         # The first volume is empty; the error about it shows that the key is used.
         self.refuse("prepare", "s.toml", "-o", "m.stylet", "--set", "patient.volume=1", says=["every voxel is 0"])
-
-    def test_it_has_no_meaning_for_contours(self):
         samples.contour_json(self.folder / "gland.json")
         self.refuse("mesh", "gland.json", "-o", "m.vtu", "--volume", "1", says=["gland.json", "only a mask has volumes", "--volume"])
 
@@ -104,29 +85,11 @@ class NoRegularFile(InFolder):
             self.refuse("info", name, says=[name, "named pipe"])
             self.refuse("insert", name, "-o", "out", says=[name, "named pipe"])
             self.refuse("serve", name, says=[name, "named pipe"])
-            (self.folder / "s.toml").write_text(f'[patient]\nsource = "{name}"\n[[insertion]]\nentry_mm = [0, 0, -30]\n'
+            self.write("s.toml", f'[patient]\nsource = "{name}"\n[[insertion]]\nentry_mm = [0, 0, -30]\n'
                                                 'target_mm = [0, 0, 0]\n')
             self.refuse("insert", "s.toml", "-o", "out", says=[name, "named pipe"])
-        (self.folder / "s.toml").write_text('[patient]\nsource = "phantom"\n[[insertion]]\nmotion = "p.csv"\n')
+        self.write("s.toml", '[patient]\nsource = "phantom"\n[[insertion]]\nmotion = "p.csv"\n')
         self.refuse("insert", "s.toml", "-o", "out", says=["p.csv", "named pipe"])
-
-    def test_devices_and_sockets(self):
-        self.refuse("info", "/dev/zero", says=["/dev/zero", "a device"])
-        with socket.socket(socket.AF_UNIX) as end:
-            end.bind(str(self.folder / "s.nii"))
-            self.refuse("info", "s.nii", says=["s.nii", "a socket"])
-
-    def test_data_files(self):
-        samples.nifti_mask(self.folder / "mask.nii.gz")
-        os.mkfifo(self.folder / "fifo")
-        header = ("ObjectType = Image\nNDims = 3\nBinaryData = True\nOffset = 0 0 0\n"
-                  "TransformMatrix = 1 0 0 0 1 0 0 0 1\nElementSpacing = 1 1 1\n"
-                  "DimSize = 2 2 2\nElementType = MET_UCHAR\nElementDataFile = ")
-        for name, says in (("fifo", "named pipe"), ("/etc/passwd", "absolute path"), ("../x", "out of the header's folder")):
-            (self.folder / "m.mhd").write_text(header + name + "\n")
-            for command in (["info", "m.mhd"], ["mesh", "m.mhd", "-o", "m.vtu"]):
-                self.assertEqual(run(*command, cwd=self.folder).returncode, 2)
-                self.refuse(*command, says=["m.mhd", name, says])
 
 
 if __name__ == "__main__":

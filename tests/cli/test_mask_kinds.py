@@ -1,23 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Masks with one property each that people met with other programs have the right volumes, places and notes.
-
-They are not part of the repository: their folder is found3 in $STYLET_SHARED_DATA, by default ../shared/data beside it.
-Without one the tests are skipped (exit status 77)."""
-import os
-import sys
-import unittest
-from pathlib import Path
-
+"""Masks with one property each that people met with other programs have the right volumes, places and notes."""
 from program import InFolder
+from shared_data import FOUND, run_tests_with
 
-DATA = Path(os.environ.get("STYLET_SHARED_DATA") or Path(__file__).resolve().parents[3] / "shared" / "data") / "found3"
 
 
 class MaskKinds(InFolder):
     def check(self, file, labels, notes=()):
         """`labels`: for each label its voxels and volume [cc]; `notes`: words that must stand in one note each."""
-        info = self.json_of("info", DATA / file)
+        info = self.json_of("info", FOUND / file)
         self.assertEqual([(label["label"], label["voxels"]) for label in info["labels"]],
                          [(number, voxels) for number, (voxels, _) in labels.items()], file)
         for label in info["labels"]:
@@ -34,10 +26,10 @@ class MaskKinds(InFolder):
         self.check("k05_two_distant_frames.dcm", {1: (946, 5.108)}, ["slices 2 to 4"])
 
     def test_plates_of_one_slice_are_not_meshed(self):
-        self.refuse("mesh", DATA / "k05_two_distant_frames.dcm", "-o", "m.vtu", says=["thicker than a voxel", "slices"])
+        self.refuse("mesh", FOUND / "k05_two_distant_frames.dcm", "-o", "m.vtu", says=["thicker than a voxel", "slices"])
 
     def test_of_plates_of_one_slice_the_mesh_says_why_it_keeps_little(self):
-        notes = " ".join(self.json_of("mesh", DATA / "k05_every_second_slice.dcm", "-o", "m.vtu")["notes"])
+        notes = " ".join(self.json_of("mesh", FOUND / "k05_every_second_slice.dcm", "-o", "m.vtu")["notes"])
         self.assertIn("7 slices, of which 7 are plates of one slice", notes)
 
     def test_each_volume_of_an_old_slicer_is_a_segment(self):
@@ -57,11 +49,8 @@ class MaskKinds(InFolder):
         self.check("k14_nan_outside.nii.gz", self.GLAND_AND_URETHRA, ["5184 voxels are no number (NaN)"])
 
     def test_an_image_that_does_not_say_where_it_lies_is_refused(self):
-        self.refuse("info", DATA / "k18_no_offset_no_matrix.mha", says=["no Offset, no TransformMatrix", "orientation"])
+        self.refuse("info", FOUND / "k18_no_offset_no_matrix.mha", says=["no Offset, no TransformMatrix", "orientation"])
 
 
 if __name__ == "__main__":
-    if not DATA.is_dir():
-        print(f"Skipped: no data in {DATA}; name the folder above it with STYLET_SHARED_DATA.")
-        sys.exit(77)
-    unittest.main()
+    run_tests_with(FOUND)

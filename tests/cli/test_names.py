@@ -7,6 +7,7 @@ import struct
 import subprocess
 import unittest
 
+import samples
 from program import HANGS_AFTER_S, STYLET, InFolder
 
 ESCAPE = "\x1b]0;title\x07\x1b[31mred\x7f\u009b2J\r"
@@ -21,13 +22,6 @@ TETS = """1 2 3 7
 CORNERS = [(x, y, z) for z in (0, 40) for x, y in ((0, 0), (40, 0), (40, 40), (0, 40))]
 
 
-def msh(name):
-    nodes = "\n".join(f"{k + 1} {x} {y} {z}" for k, (x, y, z) in enumerate(CORNERS))
-    tets = "\n".join(f"{k + 1} 4 2 1 1 {tet}" for k, tet in enumerate(TETS.splitlines()))
-    return (f'$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 1 "{name}"\n$EndPhysicalNames\n'
-            f"$Nodes\n8\n{nodes}\n$EndNodes\n$Elements\n6\n{tets}\n$EndElements\n")
-
-
 def vtk(arrays):
     """A legacy VTK file of six tetrahedra with these cell arrays: name to values."""
     tets = "\n".join("4 " + " ".join(str(int(n) - 1) for n in tet.split()) for tet in TETS.splitlines())
@@ -35,21 +29,6 @@ def vtk(arrays):
             "\n".join(f"{x} {y} {z}" for x, y, z in CORNERS) + f"\nCELLS 6 30\n{tets}\nCELL_TYPES 6\n10 10 10 10 10 10\n"
             f"CELL_DATA 6\nFIELD FieldData {len(arrays)}\n")
     return text + "".join(f"{name} 1 6 int\n{values}\n" for name, values in arrays.items())
-
-
-def nrrd(name):
-    head = ("NRRD0004\ntype: unsigned char\ndimension: 3\nspace: left-posterior-superior\nsizes: 8 8 8\n"
-            "space directions: (4,0,0) (0,4,0) (0,0,4)\nencoding: raw\nspace origin: (0,0,0)\n"
-            f"Segment0_LabelValue:=1\nSegment0_Name:={name}\n\n")
-    return head.encode() + b"\1" * 512
-
-
-def contours(name):
-    square = [[0, 0], [40, 0], [40, 40], [0, 40]]
-    slices = [[[x, y, z] for x, y in square] for z in (0, 5, 10, 15)]
-    return json.dumps({"format": "stylet-contours", "version": 1, "units": "mm", "frame": "LPS", "label": name,
-                       "frame_of_reference": "", "structures": [
-                           {"name": name, "number": 1, "type": "ORGAN", "colour": [1, 2, 3], "contours": slices}]})
 
 
 def glb(name):
@@ -79,14 +58,9 @@ class Names(InFolder):
             self.assertEqual(done.returncode, status, text)
         return text
 
-    def write(self, file, content):
-        (self.folder / file).write_bytes(content if isinstance(content, bytes) else content.encode())
-        return file
-
     def test_of_no_format_bring_control_characters_to_the_terminal(self):
-        files = [self.write("c.json", contours(ESCAPE)), self.write("m.nrrd", nrrd(ESCAPE.rstrip())),
-                 self.write("m.msh", msh(ESCAPE.rstrip())), self.write("s.glb", glb(ESCAPE))]
-        for file in files:
+        gland = {**samples.ball(15), "name": ESCAPE}
+        for file in (self.write("c.json", samples.structure_set(gland, label=ESCAPE)), self.write("s.glb", glb(ESCAPE))):
             text = self.check("info", file, status=0)
             self.assertIn("red", text, file)
             self.check("info", file, "--json", "-", status=0)
@@ -95,14 +69,6 @@ class Names(InFolder):
         file = self.write("m.vtk", vtk({"a\x1b[31m": "1 1 1 2 2 2", "b\x07": "1 1 3 3 3 3"}))
         self.assertIn("a [31m", self.check("info", file, status=0))
         self.check("info", file, "--regions-from", "c", status=2)
-
-    def test_of_dicom_bring_none_in_any_character_set(self):
-        self.succeed("phantom", "-o", ".")
-        content = (self.folder / "phantom.dcm").read_bytes()
-        self.assertIn(b"Bladder", content)
-        for name in (b"Bl\x1b[31m", b"Bl\x1b$B\x21\x07", b"Bl\xc2\x9b2J ", b"Bl\x9b2J\x07 "):
-            file = self.write("p.dcm", content.replace(b"Bladder", name))
-            self.assertIn("Bl", self.check("info", file, status=0))
 
     def test_of_plans_sources_scenarios_and_tables_bring_none(self):
         seeds = [{"position_mm": [0, 0, z], "needle": ESCAPE} for z in (0, 10, 20)]
@@ -123,36 +89,24 @@ class Names(InFolder):
 
 
 class Regions(InFolder):
-    ARRAYS = {"tissue": "1 1 1 2 2 2", "part": "1 1 3 3 3 3"}
+    def setUp(self):
+        super().setUp()
+        self.write("m.vtk", vtk({"tissue": "1 1 1 2 2 2", "part": "1 1 3 3 3 3"}))
 
     def test_of_several_arrays_are_listed_with_the_option_and_the_key_that_choose(self):
-        (self.folder / "m.vtk").write_text(vtk(self.ARRAYS))
         info = self.json_of("info", "m.vtk")
         self.assertEqual(len(info["regions"]), 1)
         for words in ("'tissue'", "'part'", '--regions-from "tissue"', 'regions_from = "tissue"'):
             self.assertIn(words, " ".join(info["notes"]))
-        info = self.json_of("info", "m.vtk", "--regions-from", "part")
-        self.assertEqual({name: region["tets"] for name, region in info["regions"].items()},
-                         {"region 1": 2, "region 3": 4})
         mesh = self.json_of("mesh", "m.vtk", "-o", "out.vtu", "--regions-from", "tissue", "--region", "2=prostate")
         self.assertEqual(list(mesh["regions"]), ["region 1", "prostate"])
-        mesh = self.json_of("mesh", "m.vtk", "-o", "out.vtu")
-        self.assertIn("--regions-from", " ".join(mesh["notes"]))
-
-    def test_of_another_array_name_or_another_kind_of_file_are_an_error(self):
-        (self.folder / "m.vtk").write_text(vtk(self.ARRAYS))
-        (self.folder / "c.json").write_text(contours("a"))
-        for command in (("info",), ("mesh", "-o", "out.vtu")):
-            self.refuse(command[0], "m.vtk", *command[1:], "--regions-from", "tisue", says=["Did you mean 'tissue'?"])
-            self.refuse(command[0], "c.json", *command[1:], "--regions-from", "a", says=["only a tetrahedral mesh"])
+        self.refuse("info", "m.vtk", "--regions-from", "tisue", says=["Did you mean 'tissue'?"])
 
     def test_may_be_chosen_in_a_scenario(self):
-        (self.folder / "m.vtk").write_text(vtk(self.ARRAYS))
-        scenario = '[patient]\nsource = "m.vtk"\nregions_from = "{}"\n[patient.regions]\n1 = "prostate"\n2 = "prostate"\n[[insertion]]\nhole = "D4"\n'
-        (self.folder / "s.toml").write_text(scenario.format("tisue"))
-        self.refuse("insert", "s.toml", "-o", "out", says=["Did you mean 'tissue'?"])
-        (self.folder / "p.toml").write_text('[patient]\nsource = "phantom"\nregions_from = "a"\n[[insertion]]\nhole = "D4"\n')
-        self.refuse("insert", "p.toml", "-o", "out", says=["regions_from", "phantom"])
+        for source, array, says in (("m.vtk", "tisue", ["Did you mean 'tissue'?"]),
+                                    ("phantom", "a", ["regions_from", "phantom"])):
+            self.write("s.toml", f'[patient]\nsource = "{source}"\nregions_from = "{array}"\n[[insertion]]\nhole = "D4"\n')
+            self.refuse("insert", "s.toml", "-o", "out", says=says)
 
 
 if __name__ == "__main__":

@@ -2,39 +2,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A file that is no patient for this program: refused by every simulation with the cure, told of by info."""
 import json
-import math
 import unittest
 
 from program import InFolder
+from samples import ellipsoid, structure_set
 
 INSERTION = '[[insertion]]\nhole = "d4"\nretract = false\n'
 INSISTS = "--region 'CTV=prostate'"
 
 
-def organ(name, centre, half, gap, kind=""):
-    count = int(2 * half[2] / gap)
-    contours = []
-    for k in range(count):
-        z = (k - (count - 1) / 2) * gap
-        scale = math.sqrt(1 - (z / half[2]) ** 2)
-        contours.append([[centre[0] + half[0] * scale * math.cos(t), centre[1] + half[1] * scale * math.sin(t),
-                          centre[2] + z] for t in (2 * math.pi * i / 48 for i in range(48))])
-    return {"name": name, "type": kind, "contours": contours}
-
-
-BREAST = [organ("Heart", (20, 0, 0), (50, 45, 55), 5), organ("Lung_L", (80, 20, 20), (50, 60, 100), 10),
-          organ("Lung_R", (-80, 20, 20), (50, 60, 100), 10), organ("CTV", (70, -80, 10), (7, 6.5, 7), 1, "CTV")]
-FLIPPED = [organ("Prostate", (0, 0, 0), (22, 17, 20), 4), organ("Bladder", (0, -10, -48), (35, 30, 26), 4)]
+BREAST = [ellipsoid("Heart", (20, 0, 0), (50, 45, 55), 5), ellipsoid("Lung_L", (80, 20, 20), (50, 60, 100), 10),
+          ellipsoid("Lung_R", (-80, 20, 20), (50, 60, 100), 10), ellipsoid("CTV", (70, -80, 10), (7, 6.5, 7), 1, "CTV")]
+FLIPPED = [ellipsoid("Prostate", (0, 0, 0), (22, 17, 20), 4), ellipsoid("Bladder", (0, -10, -48), (35, 30, 26), 4)]
 
 
 class PatientFit(InFolder):
-    def write(self, structures, lines=""):
-        (self.folder / "case.json").write_text(json.dumps({"format": "stylet-contours", "version": 1, "units": "mm",
-                                                           "frame": "LPS", "structures": structures}))
-        (self.folder / "case.toml").write_text(f'[patient]\nsource = "case.json"\n{lines}\n[mesh]\nnodes = 800\n{INSERTION}')
+    def case(self, structures, lines=""):
+        self.write("case.json", structure_set(*structures))
+        self.write("case.toml", f'[patient]\nsource = "case.json"\n{lines}\n[mesh]\nnodes = 800\n{INSERTION}')
 
     def test_a_breast_is_refused_by_every_simulation(self):
-        self.write(BREAST)
+        self.case(BREAST)
         for command in (("mesh", "case.json", "-o", "m.vtu"), ("insert", "case.toml", "-o", "out"),
                         ("prepare", "case.toml", "-o", "m.stylet"), ("image", "case.toml", "-o", "out.png"),
                         ("fluoro", "case.toml", "-o", "out.png")):
@@ -44,7 +32,7 @@ class PatientFit(InFolder):
         self.assertFalse((self.folder / "m.vtu").exists())
 
     def test_info_tells_and_its_draft_does_not_insist(self):
-        self.write(BREAST)
+        self.case(BREAST)
         warnings = self.json_of("info", "case.json")["warnings"]
         self.assertEqual(len([w for w in warnings if w.startswith("A simulation refuses this patient")]), 2, warnings)
         self.succeed("info", "case.json", "--scenario", "-o", "draft.toml")
@@ -52,26 +40,26 @@ class PatientFit(InFolder):
         self.refuse("insert", "draft.toml", "-o", "out", says=("not a patient for this program",))
 
     def test_the_user_may_insist(self):
-        self.write(BREAST, '[patient.regions]\nCTV = "prostate"')
+        self.case(BREAST, '[patient.regions]\nCTV = "prostate"')
         warnings = self.json_of("mesh", "case.json", "-o", "m.vtu", "--nodes", "800", "--region",
                                 "CTV=prostate")["warnings"]
         self.assertTrue(any("other_body_part" in w for w in warnings), warnings)
         self.assertIn("other_body_part", self.succeed("prepare", "case.toml", "-o", "m.stylet").stderr)
 
     def test_flipped_axes_are_a_warning(self):
-        self.write(FLIPPED)
+        self.case(FLIPPED)
         self.assertTrue(any("axes may be flipped" in w for w in
                             self.json_of("mesh", "case.json", "-o", "m.vtu", "--nodes", "800")["warnings"]))
 
     def test_dose_warns_where_it_judges_the_goals_of_a_prostate(self):
-        self.write(BREAST)
-        (self.folder / "plan.csv").write_text("x_mm,y_mm,z_mm,strength_U\n70,-80,10,0.5\n71,-80,14,0.5\n")
+        self.case(BREAST)
+        self.write("plan.csv", "x_mm,y_mm,z_mm,strength_U\n70,-80,10,0.5\n71,-80,14,0.5\n")
         dose = ("dose", "plan.csv", "--structures", "case.json", "--source", "i125_6711", "-o", "out",
                 "--prescription", "145", "--grid", "5")
         self.assertIn("other_body_part", self.succeed(*dose).stderr)
-        self.assertIn("other_body_part", json.dumps(json.loads((self.folder / "out/dose.json").read_text())["warnings"]))
+        self.assertIn("other_body_part", json.dumps(self.read("out/dose.json")["warnings"]))
         self.assertIn("other_body_part", (self.folder / "out/report.html").read_text())
-        (self.folder / "goals.csv").write_text("structure,metric,bound,citation\nHeart,D2cc_Gy,>= 1,own\n")
+        self.write("goals.csv", "structure,metric,bound,citation\nHeart,D2cc_Gy,>= 1,own\n")
         self.assertNotIn("other_body_part", self.succeed(*dose, "--goals", "goals.csv").stderr)
 
 

@@ -69,7 +69,7 @@ class Reproduce(InFolder):
 
     def test_a_folder_is_needed_and_must_be_writable(self):
         self.refuse("reproduce", says=["--output"])
-        (self.folder / "file").write_text("in the way")
+        self.write("file", "in the way")
         self.refuse("reproduce", "--quick", "-o", "file/out", says=["file", "not a folder"])
 
 

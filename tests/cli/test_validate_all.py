@@ -4,7 +4,6 @@
 
 Usage: test_validate_all.py PART   PART: 1 to 4; the parts together have every row
 """
-import json
 import subprocess
 import sys
 import unittest
@@ -34,7 +33,7 @@ class ValidateAll(InFolder):
         self.assertGreater(len(mine), 5)
         subprocess.run([STYLET, "validate", "-o", self.folder / "out", "--only", *mine], check=True,
                        capture_output=True, timeout=3000)
-        rows = json.loads((self.folder / "out/validate.json").read_text(encoding="utf-8"))["rows"]
+        rows = self.read("out/validate.json")["rows"]
         judged = {row["id"]: row["pass"] for row in rows if row["pass"] is not None}
         self.assertEqual({name for name, passes in judged.items() if not passes}, set(not_to_trust()) & set(judged),
                          "README.md, Not to be trusted yet: it names the rows that miss and no other")

@@ -4,6 +4,7 @@
 #include "stylet/coupling/paper/inverse_updates.hpp"
 #include "stylet/measure/remesh_bench.hpp"
 #include "stylet/measure/timing.hpp"
+#include "support/value_of.hpp"
 
 #include <gtest/gtest.h>
 
@@ -25,18 +26,17 @@ const Block& small_block() {
 TEST(RemeshCost, all_methods_agree_on_the_same_nodes_by_both_rules) {
   for (const Placement placement : {Placement::face, Placement::interior}) {
     RemeshCostOptions options{.placement = placement, .rounds = 2, .bcs_rounds = 1, .inverse_rounds = 1};
-    const auto cost = measure_remeshing(small_block().way(), options);
-    ASSERT_TRUE(cost.ok()) << cost.error().message();
-    EXPECT_EQ(cost->nodes, 125);
-    EXPECT_EQ(cost->dofs, 300);
-    EXPECT_EQ(cost->change, placement == Placement::face ? 18 : 15);
-    EXPECT_GE(cost->events, 3);
-    EXPECT_LT(cost->largest_error, 1e-11);
-    EXPECT_LT(cost->ours.median_s, cost->woodbury.median_s);
-    EXPECT_LT(cost->woodbury.median_s, cost->bcs.median_s);
-    EXPECT_LE(cost->ours.median_s, cost->ours.largest_s);
+    const auto cost = test::value_of(measure_remeshing(small_block().way(), options));
+    EXPECT_EQ(cost.nodes, 125);
+    EXPECT_EQ(cost.dofs, 300);
+    EXPECT_EQ(cost.change, placement == Placement::face ? 18 : 15);
+    EXPECT_GE(cost.events, 3);
+    EXPECT_LT(cost.largest_error, 1e-11);
+    EXPECT_LT(cost.ours.median_s, cost.woodbury.median_s);
+    EXPECT_LT(cost.woodbury.median_s, cost.bcs.median_s);
+    EXPECT_LE(cost.ours.median_s, cost.ours.largest_s);
     for (const auto& times :
-         {cost->ours_cold, cost->woodbury_full, cost->inverse, cost->rank_update, cost->stiffness, cost->hat})
+         {cost.ours_cold, cost.woodbury_full, cost.inverse, cost.rank_update, cost.stiffness, cost.hat})
       EXPECT_GT(times.median_s, 0.0);
   }
 }
@@ -83,15 +83,14 @@ TEST(RemeshCost, switches_take_new_degrees_of_freedom_one_way_only) {
 }
 
 TEST(RemeshBench, every_method_is_measured_at_every_size) {
-  const auto rows = bench_remeshing({3, 4});
-  ASSERT_TRUE(rows.ok()) << rows.error().message();
-  ASSERT_EQ(rows->size(), 10u);
-  for (std::size_t i = 0; i < rows->size(); ++i) {
-    EXPECT_EQ((*rows)[i].nodes, i < 5 ? 64 : 125);
-    EXPECT_GT((*rows)[i].median_us, 0.0);
+  const auto rows = test::value_of(bench_remeshing({3, 4}));
+  ASSERT_EQ(rows.size(), 10u);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(rows[i].nodes, i < 5 ? 64 : 125);
+    EXPECT_GT(rows[i].median_us, 0.0);
   }
-  EXPECT_EQ((*rows)[0].method, "shortcut");
-  EXPECT_EQ((*rows)[4].method, "inverse");
+  EXPECT_EQ(rows[0].method, "shortcut");
+  EXPECT_EQ(rows[4].method, "inverse");
 }
 
 TEST(Measure, median_is_the_middle_of_the_sorted_values) {

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/patient/patient_mesh.hpp"
 
+#include "support/folder.hpp"
+#include "support/value_of.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
-
-#include <unistd.h>
 
 namespace fs = std::filesystem;
 
@@ -18,33 +19,22 @@ namespace {
 /// A folder for kept meshes, and whether a mesh is made anew or taken from there.
 class KeptMeshes : public ::testing::Test {
  protected:
-  void SetUp() override {
-    fs::remove_all(folder_);
-    setenv("STYLET_CACHE", folder_.c_str(), 1);
-  }
-  void TearDown() override {
-    unsetenv("STYLET_CACHE");
-    fs::remove_all(folder_);
-  }
+  void SetUp() override { setenv("STYLET_CACHE", folder_.path().c_str(), 1); }
+  void TearDown() override { unsetenv("STYLET_CACHE"); }
   MeshedAnatomy mesh_of(int nodes) {
     Scenario scenario;
     scenario.patient.source = "phantom";
     scenario.mesh.preset = MeshPreset::paper;
     scenario.mesh.nodes = nodes;
     meshed_ = false;
-    auto mesh = mesh_patient(scenario, [this](std::string_view, double) { meshed_ = true; });
-    if (!mesh) throw std::runtime_error(mesh.error().message());
-    return *std::move(mesh);
+    return test::value_of(mesh_patient(scenario, [this](std::string_view, double) { meshed_ = true; }));
   }
   [[nodiscard]] bool meshed() const { return meshed_; }
-  [[nodiscard]] std::vector<fs::path> files() const {
-    std::vector<fs::path> all;
-    for (const auto& file : fs::directory_iterator(folder_)) all.push_back(file.path());
-    return all;
-  }
+  [[nodiscard]] std::vector<std::string> files() const { return test::names_in(folder_.path()); }
+  [[nodiscard]] fs::path path(const std::string& file) const { return folder_ / file; }
 
  private:
-  fs::path folder_ = fs::temp_directory_path() / ("stylet_kept_meshes_" + std::to_string(getpid()));
+  test::Folder folder_;
   bool meshed_ = false;
 };
 
@@ -74,7 +64,7 @@ TEST_F(KeptMeshes, are_those_that_were_made_for_the_same_options_only) {
 
 TEST_F(KeptMeshes, that_are_damaged_are_made_anew) {
   const MeshedAnatomy made = mesh_of(400);
-  const fs::path file = files().at(0);
+  const fs::path file = path(files().at(0));
   fs::resize_file(file, fs::file_size(file) / 2);
   const MeshedAnatomy again = mesh_of(400);
   EXPECT_TRUE(meshed());

@@ -3,6 +3,7 @@
 #include "stylet/dose/structure_samples.hpp"
 #include "stylet/geom/structure_slices.hpp"
 #include "stylet/mesher/mesher.hpp"
+#include "support/value_of.hpp"
 
 #include <geos_c.h>
 #include <gtest/gtest.h>
@@ -143,21 +144,17 @@ TEST(StructureVolumes, of_contours_drawn_in_any_way_are_those_of_an_independent_
   const Geos geos;
   for (unsigned seed = 1; seed <= 200; ++seed) {
     const Drawn drawn = draw(seed, geos);
-    const auto slices = structure_slices(drawn.roi, "");
-    ASSERT_TRUE(slices.ok()) << seed << ": " << slices.error().message();
-    EXPECT_NEAR(slices->volume_mm3() / drawn.volume_mm3, 1, 0.005) << seed;
-    const auto samples = sample_structure(drawn.roi, 0.5);
-    ASSERT_TRUE(samples.ok()) << seed;
-    EXPECT_NEAR(1000 * samples->volume_cc() / slices->volume_mm3(), 1, 0.01) << seed;
+    const auto slices = test::value_of(structure_slices(drawn.roi, ""));
+    EXPECT_NEAR(slices.volume_mm3() / drawn.volume_mm3, 1, 0.005) << seed;
+    const auto samples = test::value_of(sample_structure(drawn.roi, 0.5));
+    EXPECT_NEAR(1000 * samples.volume_cc() / slices.volume_mm3(), 1, 0.01) << seed;
     const Roi* one[] = {&drawn.roi};
-    const auto frame = common_slice_frame(one, "");
-    ASSERT_TRUE(frame.ok()) << seed;
-    const auto meshed = structure_slices(drawn.roi, "", *frame);
-    ASSERT_TRUE(meshed.ok()) << seed;
-    EXPECT_NEAR(meshed->volume_mm3() / slices->volume_mm3(), 1, 1e-4) << seed;
-    EXPECT_EQ(slices->note.has_value(), !drawn.said.empty()) << seed << ": " << slices->note.value_or("");
+    const auto frame = test::value_of(common_slice_frame(one, ""));
+    const auto meshed = test::value_of(structure_slices(drawn.roi, "", frame));
+    EXPECT_NEAR(meshed.volume_mm3() / slices.volume_mm3(), 1, 1e-4) << seed;
+    EXPECT_EQ(slices.note.has_value(), !drawn.said.empty()) << seed << ": " << slices.note.value_or("");
     for (const std::string& word : drawn.said)
-      EXPECT_NE(slices->note.value_or("").find(word), std::string::npos) << seed << ": " << word;
+      EXPECT_NE(slices.note.value_or("").find(word), std::string::npos) << seed << ": " << word;
   }
 }
 
@@ -169,13 +166,12 @@ TEST(StructureVolumes, in_the_mesh_are_those_of_the_contours_or_a_note_says_so) 
     set.rois = {drawn.roi};
     MeshOptions options;
     options.nodes = 1200;
-    const auto mesh = mesh_contours(set, options);
-    ASSERT_TRUE(mesh.ok()) << seed << ": " << mesh.error().message();
-    const auto& regions = mesh->report.regions;
+    const auto mesh = test::value_of(mesh_contours(set, options));
+    const auto& regions = mesh.report.regions;
     const auto gland = std::find_if(regions.begin(), regions.end(), [](const auto& r) { return r.name == "prostate"; });
     ASSERT_NE(gland, regions.end());
     EXPECT_NEAR(1000 * gland->structure_volume_cc / drawn.volume_mm3, 1, 0.005) << seed;
-    const bool said = std::any_of(mesh->report.notes.begin(), mesh->report.notes.end(), [](const std::string& note) {
+    const bool said = std::any_of(mesh.report.notes.begin(), mesh.report.notes.end(), [](const std::string& note) {
       return note.find("'prostate' differs by") != std::string::npos;
     });
     if (!said) {
@@ -217,11 +213,10 @@ TEST(StructureVolumes, of_planes_written_twice_a_little_apart_count_once) {
       roi.contours.push_back(ellipse(-20, 0, 3.0 * k, 8, 8, 60));
       roi.contours.push_back(ellipse(20, 0, 3.0 * k + apart, 8, 8, 60));
     }
-    const auto slices = structure_slices(roi, "");
-    ASSERT_TRUE(slices.ok());
-    EXPECT_EQ(slices->slices.size(), 8U) << apart;
-    EXPECT_NEAR(slices->volume_mm3(), 24 * 2 * slices->slices[0].area_mm2 / 2, 1e-6 * slices->volume_mm3()) << apart;
-    EXPECT_NEAR(slices->slices[0].area_mm2, 2 * std::numbers::pi * 64, 3) << apart;
+    const auto slices = test::value_of(structure_slices(roi, ""));
+    EXPECT_EQ(slices.slices.size(), 8U) << apart;
+    EXPECT_NEAR(slices.volume_mm3(), 24 * 2 * slices.slices[0].area_mm2 / 2, 1e-6 * slices.volume_mm3()) << apart;
+    EXPECT_NEAR(slices.slices[0].area_mm2, 2 * std::numbers::pi * 64, 3) << apart;
   }
 }
 
@@ -235,9 +230,8 @@ TEST(StructureVolumes, of_thin_walls_and_nested_islands_keep_every_ring) {
     area += sign * 60 * radius * radius * std::sin(2 * std::numbers::pi / 120);
     sign = -sign;
   }
-  const auto slices = structure_slices(roi, "");
-  ASSERT_TRUE(slices.ok());
-  EXPECT_NEAR(slices->volume_mm3(), 12 * area, 1e-6 * area);
+  const auto slices = test::value_of(structure_slices(roi, ""));
+  EXPECT_NEAR(slices.volume_mm3(), 12 * area, 1e-6 * area);
 }
 
 TEST(StructureVolumes, of_a_hole_beside_an_overlapping_part_keep_the_hole) {
@@ -261,10 +255,9 @@ TEST(StructureVolumes, of_a_contour_with_a_small_loop_follow_the_even_odd_rule) 
   for (int k = 0; k < 5; ++k) roi.contours.push_back(ellipse(0, 0, 3.0 * k, 20, 15, 48));
   const double volume = structure_slices(roi, "")->volume_mm3();
   std::swap(roi.contours[2].points[10], roi.contours[2].points[11]);
-  const auto slices = structure_slices(roi, "");
-  ASSERT_TRUE(slices.ok()) << slices.error().message();
-  EXPECT_NEAR(slices->volume_mm3() / volume, 1, 0.005);
-  EXPECT_NE(slices->note.value_or("").find("contour 3"), std::string::npos);
+  const auto slices = test::value_of(structure_slices(roi, ""));
+  EXPECT_NEAR(slices.volume_mm3() / volume, 1, 0.005);
+  EXPECT_NE(slices.note.value_or("").find("contour 3"), std::string::npos);
 }
 
 }  // namespace

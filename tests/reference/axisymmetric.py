@@ -2,6 +2,7 @@
 """Axisymmetric finite elements in CalculiX around a rod in tissue: common part of the models in this folder.
 Lengths are in mm, forces in N, moduli in MPa. The rod's axis is r = 0 and its end is at height 0."""
 
+import argparse
 import os
 import pathlib
 import re
@@ -12,6 +13,14 @@ import tempfile
 
 RADIUS_MM = 0.635  # radius of the rod
 SKIPPED = 77  # exit status that ctest takes for a skipped test
+
+
+def arguments(description, *flags):
+    """The arguments of a program that has these flags and no other arguments."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    for flag in flags:
+        parser.add_argument(flag, action="store_true")
+    return parser.parse_args()
 
 
 def away(start, end, smallest, growth, stops=()):

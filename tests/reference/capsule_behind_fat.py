@@ -22,13 +22,12 @@ The tissue is linear, or Yeoh's solid with C20 = C10 in both tissues (C10 = μ/2
 With Yeoh's solid, the elements at the edge of the end are 0.38 mm wide. Elements half as wide collapse before the end
 has gone down by 12 mm, but until then give the same force within 1 %."""
 
-import argparse
 import math
 import pathlib
 import re
 import sys
 
-from axisymmetric import RADIUS_MM, Mesh, away, material, pushed, radii
+from axisymmetric import RADIUS_MM, Mesh, arguments, away, material, pushed, radii
 
 FAT_MM = 12.0
 FAT_MPA, GLAND_MPA, POISSON = 2e-3, 30e-3, 0.45
@@ -137,13 +136,10 @@ def check():
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--check", action="store_true")
-    parser.add_argument("--write", action="store_true")
-    arguments = parser.parse_args()
-    if arguments.check:
+    given = arguments(__doc__, "--check", "--write")
+    if given.check:
         check()
-    elif arguments.write:
+    elif given.write:
         write()
     else:
         report()

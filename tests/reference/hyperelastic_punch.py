@@ -20,13 +20,12 @@ dent s is z minus the displacement of linear tissue under the same force spread 
 
 O. H. Yeoh, Some forms of the strain energy function for rubber, Rubber Chem. Technol. 66 (1993) 754–771."""
 
-import argparse
 import math
 import pathlib
 import re
 import sys
 
-from axisymmetric import RADIUS_MM, Mesh, away, material, pushed, radii
+from axisymmetric import RADIUS_MM, Mesh, arguments, away, material, pushed, radii
 
 YOUNG_MPA = 30e-3
 HELD_MM = 60.0
@@ -116,17 +115,14 @@ def check():
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--check", action="store_true")
-    parser.add_argument("--write", action="store_true")
-    arguments = parser.parse_args()
-    if arguments.check:
+    given = arguments(__doc__, "--check", "--write")
+    if given.check:
         check()
     rows = ["// Made by tests/reference/hyperelastic_punch.py --write: Yeoh's solid, C20 = C10, of 30 kPa; Poisson's ratio, mm, N."]
     for place, solid, poisson in CASES:
         points, compliance = curve(place, solid, poisson)
         report(place, solid, poisson, points, compliance)
-        if arguments.write and (place, solid) == ("inside", "yeoh"):
+        if given.write and (place, solid) == ("inside", "yeoh"):
             rows += [f"{{{poisson}, {z:.4f}, {force:.5f}}}," for z, force in points]
             TABLE.write_text("\n".join(rows) + "\n", encoding="utf-8")
 

@@ -16,12 +16,11 @@ for infinity follows because the effect of the distance is inversely proportiona
 the smallest 0.3 µm at the edge of the rod's end, where stress is singular; with 0.01 mm there, the result is 2 % too
 stiff."""
 
-import argparse
 import pathlib
 import re
 import sys
 
-from axisymmetric import RADIUS_MM, Mesh, away, pushed, radii
+from axisymmetric import RADIUS_MM, Mesh, arguments, away, pushed, radii
 
 DEPTH_MM = 40.0  # depth of the rod's end below the free surface
 FAT_MPA, GLAND_MPA, POISSON = 2e-3, 30e-3, 0.45
@@ -54,16 +53,12 @@ def unbounded(above_mm, poisson=POISSON, depth_mm=DEPTH_MM):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--check", action="store_true")
-    parser.add_argument("--alone", action="store_true")
-    parser.add_argument("--shallow", action="store_true")
-    arguments = parser.parse_args()
-    if arguments.alone:
+    given = arguments(__doc__, "--check", "--alone", "--shallow")
+    if given.alone:
         for poisson in (0.45, 0.49):
             print(f"Poisson's ratio {poisson}: {unbounded(NO_FAT_MM, poisson) / (GLAND_MPA * RADIUS_MM):.3f} E R", flush=True)
         return
-    if arguments.shallow:
+    if given.shallow:
         for depth in (1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0):
             over = unbounded(NO_FAT_MM, depth_mm=depth) / (GLAND_MPA * RADIUS_MM)
             print(f"{depth:5.1f} mm below the surface: {over:.3f} E R", flush=True)
@@ -71,13 +66,13 @@ def main():
     table = [(float(a), float(k)) for a, k in re.findall(r"\{(-?[\d.]+), ([\d.]+)\}", TABLE.read_text(encoding="utf-8"))]
     failed = False
     for above, expected in table:
-        if arguments.check and above not in (1.0, 0.0, -1.0):
+        if given.check and above not in (1.0, 0.0, -1.0):
             continue
         found = unbounded(above)
         off = abs(found / expected - 1.0)
         failed = failed or off > 0.01
         print(f"{above:6.1f} mm above the gland: {found:.6f} N/mm, table {expected:.6f}, {100 * off:.2f} % apart", flush=True)
-    sys.exit(1 if arguments.check and failed else 0)
+    sys.exit(1 if given.check and failed else 0)
 
 
 if __name__ == "__main__":

@@ -13,12 +13,11 @@ the shaft up to the rod's end, or only up to three radii behind it and slides wi
 flat end is bonded to the tissue, or does not touch it. Force / displacement along the axis is the stiffness. Elements
 are quadratic (CAX8R), the smallest at the ends of bonded parts, where stress is singular."""
 
-import argparse
 import pathlib
 import re
 import sys
 
-from axisymmetric import RADIUS_MM, Mesh, away, pushed, radii
+from axisymmetric import RADIUS_MM, Mesh, arguments, away, pushed, radii
 
 YOUNG_MPA = 30e-3
 SIDE_MM, HEIGHT_MM = 50.0, 100.0
@@ -53,23 +52,20 @@ def stiffness(poisson, length_mm, bonded_from_mm, end_bonded, smallest):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--check", action="store_true")
-    parser.add_argument("--finer", action="store_true")
-    arguments = parser.parse_args()
+    given = arguments(__doc__, "--check", "--finer")
     rows = re.findall(r"\{([\d.]+), ([\d.]+), ([\d.]+), ([\d.]+), ([\d.]+), ([\d.]+)\}", TABLE.read_text(encoding="utf-8"))
     failed = False
     for row in rows:
         poisson, length, *expected = map(float, row)
-        if arguments.check and length != 40.0:
+        if given.check and length != 40.0:
             continue
-        found = [stiffness(poisson, length, bonded_from, end, 1e-3 if arguments.finer else 1e-2)
+        found = [stiffness(poisson, length, bonded_from, end, 1e-3 if given.finer else 1e-2)
                  for bonded_from in (0.0, SLIDES_MM) for end in (True, False)]
         off = max(abs(f / e - 1.0) for f, e in zip(found, expected))
         failed = failed or off > 0.003
         numbers = ", ".join(f"{f:.4f}" for f in found)
         print(f"{{{poisson:g}, {length:g}, {numbers}}} N/mm, at most {100 * off:.2f} % from the table", flush=True)
-    sys.exit(1 if arguments.check and failed else 0)
+    sys.exit(1 if given.check and failed else 0)
 
 
 if __name__ == "__main__":

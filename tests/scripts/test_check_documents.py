@@ -1,13 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """scripts/check_documents finds long lines, broken links, pages without a link to them, and phrases without a noun."""
-import subprocess
-import sys
-import tempfile
 import unittest
-from pathlib import Path
 
-SCRIPT = Path(__file__).resolve().parents[2] / "scripts" / "check_documents"
+from trees import run_script
+
 SOUND = {"README.md": "# A\n", "CONTRIBUTING.md": "# B\n", "CHANGELOG.md": "# C\n",
          "docs/index.md": "# Index\n[one](one.md#a-first-heading)\n",
          "docs/one.md": "# One\n## A `first` heading\n| " + "wide " * 20 + "|\n\n    code\n[two](sub/two.md)\n",
@@ -17,13 +14,7 @@ SOUND = {"README.md": "# A\n", "CONTRIBUTING.md": "# B\n", "CHANGELOG.md": "# C\
 class Documents(unittest.TestCase):
     def complaints(self, changes):
         """Exit status and output of the script for the correct documents plus some others."""
-        with tempfile.TemporaryDirectory() as folder:
-            for path, text in {**SOUND, **changes}.items():
-                file = Path(folder) / path
-                file.parent.mkdir(parents=True, exist_ok=True)
-                file.write_text(text, encoding="utf-8")
-            done = subprocess.run([sys.executable, SCRIPT, folder], capture_output=True, text=True, check=False)
-            return done.returncode, done.stdout
+        return run_script("check_documents", {**SOUND, **changes})
 
     def refused(self, changes, *texts):
         status, said = self.complaints(changes)

@@ -81,6 +81,38 @@ class LiveClient {
     }
     return true;
   }
+  /// Takes the needle, which nobody holds.
+  bool take() {
+    command(R"({"do":"take"})");
+    return until([&] { return status.value("you_hold", false); });
+  }
+  /// Moves the needle with the hand to a depth [mm].
+  bool go_to(float depth, float speed = 100.0F) {
+    hand(depth, speed);
+    return until([&] { return std::abs(depth_mm - depth) < 0.1F; });
+  }
+  /// Waits for so much of the simulated time [s].
+  bool passes(double seconds) {
+    return until([&, then = time_s] { return time_s > then + seconds; });
+  }
+  /// Looks at a recording, until its picture is there.
+  bool replay(const std::string& name) {
+    command(R"({"do":"replay","name":")" + name + "\"}");
+    return until([&] { return status.value("mode", "") == "replay" && (bits & 2U) != 0; });
+  }
+  bool back_to_live() {
+    command(R"({"do":"live"})");
+    return until([&] { return status.value("mode", "") == "live" && (bits & 2U) == 0; });
+  }
+  /// Waits until there are this many notices. @return the text of the last one
+  std::string notice(std::size_t count = 1) {
+    EXPECT_TRUE(until([&] { return notices.size() >= count; }));
+    return notices.back()["text"];
+  }
+  /// The name of the recording that is being written; empty if there is none.
+  [[nodiscard]] std::string recording() const {
+    return status.contains("recording") ? status["recording"].value("name", "") : "";
+  }
   void read() {
     beast::flat_buffer buffer;
     socket_.read(buffer);

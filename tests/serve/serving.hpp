@@ -5,6 +5,7 @@
 
 #include "sim/box_patient.hpp"
 #include "stylet/serve/server.hpp"
+#include "support/value_of.hpp"
 
 #include <unistd.h>
 
@@ -12,14 +13,14 @@
 
 namespace stylet::test {
 
-/// A temporary folder that is removed at the end of the test.
-struct Folder {
+/// A temporary folder named after a process, removed at the end of the test.
+struct ProcessFolder {
   static std::filesystem::path of(pid_t process) {
     return std::filesystem::temp_directory_path() / ("stylet-serve-" + std::to_string(process));
   }
   std::filesystem::path path = of(::getpid());
-  Folder() { std::filesystem::remove_all(path); }
-  ~Folder() { std::filesystem::remove_all(path); }
+  ProcessFolder() { std::filesystem::remove_all(path); }
+  ~ProcessFolder() { std::filesystem::remove_all(path); }
 };
 
 inline Scenario hole_scenario() {
@@ -41,7 +42,7 @@ inline serve::CaseSource box_case(const std::string& title) {
 
 /// A server on a free port with two cases. It runs slowly enough for builds with sanitizers.
 struct Serving {
-  Folder folder;
+  ProcessFolder folder;
   std::unique_ptr<serve::Server> server;
 
   explicit Serving(const std::function<void(serve::ServerSettings&)>& change = {}) {
@@ -56,9 +57,7 @@ struct Serving {
     s.session.runner.lock_memory = false;
     s.session.field_waits_s = 0.0;  // no page draws in these tests, and recordings have frames only with a field
     if (change) change(s);
-    auto opened = serve::Server::open(std::move(s));
-    if (!opened) throw std::runtime_error(opened.error().message());
-    server = std::move(*opened);
+    server = value_of(serve::Server::open(std::move(s)));
     server->start();
   }
   [[nodiscard]] std::uint16_t port() const { return server->port(); }

@@ -94,8 +94,7 @@ struct WithFriend {
       : companion(std::make_shared<Friend>(has_hand)),
         serving([this](serve::ServerSettings& s) { s.session.companion = companion; }),
         client(ready_client(serving)) {
-    client->command(R"({"do":"take"})");
-    EXPECT_TRUE(client->until([&] { return client->status.value("you_hold", false); }));
+    EXPECT_TRUE(client->take());
   }
   [[nodiscard]] Pose base() const {
     return pose(companion->locked([](const Friend& f) { return f.base; }));
@@ -138,8 +137,7 @@ TEST(Companion, with_the_hand_moves_the_needle_and_the_page_does_not) {
   ASSERT_TRUE(client.until([&] { return with.problem() == "it sleeps"; }));
   const Pose start = with.base();
   client.hand(20.0F, 100.0F);
-  const double then = client.time_s;
-  ASSERT_TRUE(client.until([&] { return client.time_s > then + 0.3; }));
+  ASSERT_TRUE(client.passes(0.3));
   EXPECT_LT(client.depth_mm, 0.0F);
 
   with.companion->hand(Pose{start.origin + Vec3(50, 0, 0), start.rotation});
@@ -150,8 +148,7 @@ TEST(Companion, with_the_hand_moves_the_needle_and_the_page_does_not) {
   with.companion->hand(std::nullopt);
   ASSERT_TRUE(client.until([&] { return with.problem() == "it sleeps"; })) << "lost";
   const float there = client.depth_mm;
-  const double lost = client.time_s;
-  ASSERT_TRUE(client.until([&] { return client.time_s > lost + 0.3; }));
+  ASSERT_TRUE(client.passes(0.3));
   EXPECT_EQ(client.depth_mm, there) << "the needle stays";
   ASSERT_TRUE(with.push(start, 25.0, 30.0)) << "and is taken up again";
 }
@@ -161,9 +158,9 @@ TEST(Companion, keeps_the_hand_over_resets_and_holes) {
   LiveClient& client = *with.client;
   const Pose start = with.base();
   ASSERT_TRUE(with.push(start, 0.0, 20.0));
-  const std::string name = client.status["recording"]["name"];
+  const std::string name = client.recording();
   client.command(R"({"do":"reset"})");
-  ASSERT_TRUE(client.until([&] { return client.status["recording"]["name"] != name && client.depth_mm < 0.0F; }));
+  ASSERT_TRUE(client.until([&] { return client.recording() != name && client.depth_mm < 0.0F; }));
   EXPECT_EQ(client.status["device"], "a friend");
   ASSERT_TRUE(with.push(start, 0.0, 15.0)) << "from its start";
   client.command(R"({"do":"hole","hole":"E3.5"})");
@@ -177,16 +174,13 @@ TEST(Companion, keeps_the_hand_over_resets_and_holes) {
 TEST(Companion, sees_nothing_while_a_recording_is_replayed) {
   WithFriend with(false);
   LiveClient& client = *with.client;
-  client.hand(5.0F, 100.0F);
-  ASSERT_TRUE(client.until([&] { return client.depth_mm > 4.9F; }));
-  const std::string name = client.status["recording"]["name"];
+  ASSERT_TRUE(client.go_to(5.0F, 100.0F));
+  const std::string name = client.recording();
   client.command(R"({"do":"reset"})");
-  client.command(R"({"do":"replay","name":")" + name + "\"}");
-  ASSERT_TRUE(client.until([&] { return client.status.value("mode", "") == "replay" && (client.bits & 2U) != 0; }));
+  ASSERT_TRUE(client.replay(name));
   const int pictures = with.companion->locked([](const Friend& f) { return f.pictures; });
   client.command(R"({"do":"play","rate":2})");
-  const double then = client.time_s;
-  ASSERT_TRUE(client.until([&] { return client.time_s > then + 0.05; }));
+  ASSERT_TRUE(client.passes(0.05));
   EXPECT_EQ(with.companion->locked([](const Friend& f) { return f.pictures; }), pictures);
   client.command(R"({"do":"live"})");
   EXPECT_TRUE(

@@ -51,8 +51,7 @@ TEST(FieldMaker, gives_up_while_it_waits) {
 TEST(FieldMaker, of_a_server_begins_when_a_page_has_drawn_whoever_holds_the_needle) {
   const Serving serving([](ServerSettings& s) { s.session.field_waits_s = 1e6; });
   const auto holder = ready_client(serving);
-  holder->command(R"({"do":"take"})");
-  ASSERT_TRUE(holder->until([&] { return holder->status.value("you_hold", false); }));
+  ASSERT_TRUE(holder->take());
   EXPECT_NE(holder->status["stage"], "") << "still missing";
   const auto watcher = ready_client(serving);
   watcher->command(R"({"do":"drawn"})");

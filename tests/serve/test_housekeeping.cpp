@@ -2,10 +2,9 @@
 #include "folder_lock.hpp"
 #include "housekeeping.hpp"
 #include "shelf.hpp"
+#include "support/folder.hpp"
 
 #include <gtest/gtest.h>
-
-#include <unistd.h>
 
 #include <fstream>
 
@@ -18,15 +17,12 @@ constexpr std::uintmax_t kEnough = 100 * RecordingRoom::kGigabyte;
 
 /// Recordings of 1,000 bytes, each a minute younger than the one before.
 struct Housekeeping : testing::Test {
-  fs::path folder = fs::temp_directory_path() / ("stylet-housekeeping-" + std::to_string(::getpid()));
-  void SetUp() override { fs::remove_all(folder); }
-  void TearDown() override { fs::remove_all(folder); }
+  stylet::test::Folder temporary;
+  fs::path folder = temporary.path();
 
   int made = 0;
   void make(const std::string& name) {
-    const fs::path file = folder / name / "run.h5";
-    fs::create_directories(file.parent_path());
-    std::ofstream(file) << std::string(1000, 'x');
+    const fs::path file = stylet::test::write_file(folder / name / "run.h5", std::string(1000, 'x'));
     fs::last_write_time(file, fs::file_time_type::clock::now() - std::chrono::minutes(1000 - ++made));
   }
   [[nodiscard]] bool has(const std::string& name) const { return fs::exists(folder / name / "run.h5"); }

@@ -66,8 +66,7 @@ struct Watched {
           };
         }),
         page(ready_client(serving)) {
-    page->command(R"({"do":"take"})");
-    EXPECT_TRUE(page->until([&] { return page->status.value("you_hold", false); }));
+    EXPECT_TRUE(page->take());
   }
   /// Whether the last picture shows the plane through a pose of the probe, seen along its axis.
   [[nodiscard]] bool shows(const Pose& pose) const {
@@ -130,8 +129,7 @@ TEST(CompanionImages, follow_the_probe_that_it_holds) {
   EXPECT_EQ(at.told()["probe_problem"], "");
   // The page cannot move the stepper meanwhile, but fill the balloon.
   page.command(R"({"do":"set","key":"probe.lift_mm","value":8})");
-  ASSERT_TRUE(page.until([&] { return page.notices.size() == 1; }));
-  EXPECT_NE(page.notices[0]["text"].get<std::string>().find("a tracker moves the probe"), std::string::npos);
+  EXPECT_SAYS(page.notice(1), "a tracker moves the probe");
   page.command(R"({"do":"image","show":"transverse"})");
   page.command(R"({"do":"set","key":"probe.balloon_mm","value":1})");
   ASSERT_TRUE(page.until([&] { return page.images > 0 && page.image["probe"]["balloon_mm"] == 1.0; }));

@@ -24,8 +24,7 @@ struct Imaging {
 
   explicit Imaging(const serve::CaseSource& source)
       : serving([&](serve::ServerSettings& s) { s.session.cases = {source}; }) {
-    page->command(R"({"do":"take"})");
-    EXPECT_TRUE(page->until([&] { return page->status.value("you_hold", false); }));
+    EXPECT_TRUE(page->take());
   }
 };
 
@@ -61,14 +60,6 @@ TEST(LiveImages, what_cannot_be_is_said_in_words) {
   page.command(R"({"do":"image","show":"transverse"})");
   ASSERT_TRUE(page.until([&] { return !page.status["image"]["problem"].get<std::string>().empty(); }));
   EXPECT_NE(page.status["image"]["problem"].get<std::string>().find("no rectum"), std::string::npos);
-  page.command(R"({"do":"set","key":"probe.lift_mm","value":1000})");
-  ASSERT_TRUE(page.until([&] { return page.notices.size() == 1; }));
-  EXPECT_NE(page.notices[0]["text"].get<std::string>().find("probe.lift_mm"), std::string::npos);
-  page.command(R"({"do":"set","key":"needle.diameter_mm","value":1})");
-  ASSERT_TRUE(page.until([&] { return page.notices.size() == 2; }));
-  EXPECT_NE(page.notices[1]["text"].get<std::string>().find("not a key of the pictures"), std::string::npos);
-  page.command(R"({"do":"image","show":"photograph"})");
-  ASSERT_TRUE(page.until([&] { return page.notices.size() == 3; }));
   // X-ray needs no rectum.
   page.command(R"({"do":"image","show":"xray"})");
   ASSERT_TRUE(page.until([&] { return page.images > 0 && page.status["image"]["problem"] == ""; }));
@@ -83,16 +74,14 @@ TEST(LiveImages, show_the_needle_and_a_replay) {
   const auto before = page.images;
   ASSERT_TRUE(page.until([&] { return page.images > before + 1; }));
   const std::vector<unsigned char> without = page.pixels;
-  page.hand(28.0F, 100.0F);
-  ASSERT_TRUE(page.until([&] { return page.depth_mm > 27.9F; }));
+  ASSERT_TRUE(page.go_to(28.0F, 100.0F));
   ASSERT_TRUE(page.until([&] {  // the needle is in the picture
     std::size_t darker = 0;
     for (std::size_t k = 0; k < without.size(); ++k) darker += page.pixels[k] + 10 < without[k] ? 1 : 0;
     return darker > 100;
   }));
-  const std::string name = page.status["recording"]["name"];
-  page.command(R"({"do":"replay","name":")" + name + R"("})");
-  ASSERT_TRUE(page.until([&] { return page.status.value("mode", "") == "replay"; }));
+  const std::string name = page.recording();
+  ASSERT_TRUE(page.replay(name));
   page.command(R"({"do":"seek","time_s":1000})");
   const auto live = page.images;
   ASSERT_TRUE(page.until([&] { return page.images > live && page.image["time_s"].get<double>() > 0.0; }));
@@ -109,19 +98,16 @@ TEST(LiveImages, of_a_replay_have_the_probe_where_it_was_and_it_presses) {
   };
   page.command(R"({"do":"image","show":"transverse"})");
   ASSERT_TRUE(lift(4.0));
-  page.hand(28.0F, 100.0F);
-  ASSERT_TRUE(page.until([&] { return page.depth_mm > 27.9F; }));
+  ASSERT_TRUE(page.go_to(28.0F, 100.0F));
   const double low_s = page.time_s;
   ASSERT_TRUE(page.until([&] { return page.time_s > low_s + 0.2; }));
   ASSERT_TRUE(lift(8.0));
   ASSERT_TRUE(page.until([&] { return page.image["probe"]["force_N"].is_number(); }));
   const double force_N = page.image["probe"]["force_N"];
   EXPECT_GT(force_N, 0.1);
-  page.hand(10.0F, 100.0F);
-  ASSERT_TRUE(page.until([&] { return page.depth_mm < 10.1F; }));
-  const std::string name = page.status["recording"]["name"];
-  page.command(R"({"do":"replay","name":")" + name + R"("})");
-  ASSERT_TRUE(page.until([&] { return page.status.value("mode", "") == "replay"; }));
+  ASSERT_TRUE(page.go_to(10.0F, 100.0F));
+  const std::string name = page.recording();
+  ASSERT_TRUE(page.replay(name));
   const auto shows = [&](double mm) {
     return page.until(
         [&] { return page.image["probe"]["lift_mm"] == mm && page.image["probe"]["force_N"].is_number(); });
@@ -137,7 +123,6 @@ TEST(LiveImages, of_a_replay_have_the_probe_where_it_was_and_it_presses) {
   page.command(R"({"do":"seek","time_s":)" + std::to_string(low_s) + "}");
   ASSERT_TRUE(page.until([&] { return std::abs(page.image["time_s"].get<double>() - low_s) < 1e-3; }));
   EXPECT_EQ(page.image["probe"]["lift_mm"], 2.0);
-  page.command(R"({"do":"live"})");
-  ASSERT_TRUE(page.until([&] { return page.status.value("mode", "") == "live"; }));
+  ASSERT_TRUE(page.back_to_live());
   EXPECT_TRUE(shows(8.0));
 }

@@ -2,6 +2,7 @@
 // The dose that the live page shows, against that of stylet dose.
 #include "implant_dose.hpp"
 #include "small_implant.hpp"
+#include "support/value_of.hpp"
 
 #include <gtest/gtest.h>
 
@@ -41,9 +42,7 @@ ImplantDose::News complete(ImplantDose& dose, std::uint64_t version) {
 }
 
 std::unique_ptr<ImplantDose> opened(std::shared_ptr<const ImplantCase> implant) {
-  auto dose = ImplantDose::open(std::move(implant));
-  if (!dose) throw std::runtime_error(dose.error().message());
-  return *std::move(dose);
+  return value_of(ImplantDose::open(std::move(implant)));
 }
 
 }  // namespace

@@ -85,15 +85,13 @@ TEST(LiveImplant, a_row_of_seeds_is_dropped_and_has_a_dose) {
 
   // A fourth seed is not in this needle.
   page.command(R"({"do":"drop"})");
-  ASSERT_TRUE(page.until([&] { return !page.notices.empty(); }));
-  EXPECT_NE(page.notices.back()["text"].get<std::string>().find("all its 3 seeds"), std::string::npos);
+  EXPECT_SAYS(page.notice(), "all its 3 seeds");
 }
 
 TEST(LiveImplant, a_drop_in_air_is_refused_with_words) {
   Implanting at;
   at.page->command(R"({"do":"drop"})");
-  ASSERT_TRUE(at.page->until([&] { return !at.page->notices.empty(); }));
-  EXPECT_NE(at.page->notices.back()["text"].get<std::string>().find("not in the tissue"), std::string::npos);
+  EXPECT_SAYS(at.page->notice(), "not in the tissue");
   EXPECT_EQ(at.dropped(), 0u);
 }
 
@@ -106,8 +104,7 @@ TEST(LiveImplant, the_last_seed_can_be_taken_back) {
   ASSERT_TRUE(page.until([&] { return at.dropped() == 0 && at.is_computed(); }));
   EXPECT_EQ(page.implant["now"]["d90_Gy"], 0.0);
   page.command(R"({"do":"undo"})");
-  ASSERT_TRUE(page.until([&] { return !page.notices.empty(); }));
-  EXPECT_NE(page.notices.back()["text"].get<std::string>().find("no seed"), std::string::npos);
+  EXPECT_SAYS(page.notice(), "no seed");
 }
 
 TEST(LiveImplant, another_needle_comes_at_once_and_the_seeds_stay) {
@@ -144,8 +141,7 @@ TEST(LiveImplant, a_case_without_a_plan_has_none) {
     return page.plan["needles"].empty() && page.status.value("insertion", "") == "hole D4";
   })) << page.status;
   page.command(R"({"do":"drop"})");
-  ASSERT_TRUE(page.until([&] { return !page.notices.empty(); }));
-  EXPECT_NE(page.notices.back()["text"].get<std::string>().find("no plan"), std::string::npos);
+  EXPECT_SAYS(page.notice(), "no plan");
 }
 
 TEST(LiveImplant, a_replay_has_the_seeds_of_each_moment_and_leaves_the_live_ones_as_they_are) {
@@ -160,7 +156,7 @@ TEST(LiveImplant, a_replay_has_the_seeds_of_each_moment_and_leaves_the_live_ones
   ASSERT_TRUE(page.until([&] { return page.plan["needles"][1]["ready"].get<bool>(); }));
   page.command(R"({"do":"needle","index":1})");
   ASSERT_TRUE(page.until([&] { return page.plan["current"] == 1 && page.depth_mm < 0.0F; }));
-  const std::string name = page.status["recording"]["name"];
+  const std::string name = page.recording();
   ASSERT_TRUE(at.go_to(at.drop_depth(1, 0)));
   const double before_drop_s = page.time_s;
   ASSERT_TRUE(at.drop());
@@ -194,8 +190,7 @@ TEST(LiveImplant, a_replay_has_the_seeds_of_each_moment_and_leaves_the_live_ones
   EXPECT_EQ(page.implant["seeds"], live_seeds);
   EXPECT_EQ(page.implant["now"]["d90_Gy"], live_now);
   page.command(R"({"do":"undo"})");
-  ASSERT_TRUE(page.until([&] { return !page.notices.empty(); }));
-  EXPECT_NE(page.notices.back()["text"].get<std::string>().find("recording"), std::string::npos);
+  EXPECT_SAYS(page.notice(), "recording");
 
   page.command(R"({"do":"live"})");
   ASSERT_TRUE(page.until([&] {
@@ -253,7 +248,7 @@ TEST(LiveImplant, a_strand_keeps_its_spacing_and_a_recording_has_it) {
     EXPECT_NEAR((rest(seed) - rest(seed - 1)).norm(), (planned(seed) - planned(seed - 1)).norm(), 0.15);
   ASSERT_TRUE(page.until([&, until = page.time_s + 1.0] { return page.time_s > until; }));
   const auto live = page.implant["seeds"];
-  page.command(R"({"do":"replay","name":")" + page.status["recording"]["name"].get<std::string>() + R"("})");
+  page.command(R"({"do":"replay","name":")" + page.recording() + R"("})");
   ASSERT_TRUE(page.until([&] { return page.status.value("mode", "") == "replay"; }));
   page.command(R"({"do":"seek","time_s":1000})");
   ASSERT_TRUE(page.until([&] { return at.dropped() == 3; }));
@@ -282,8 +277,7 @@ TEST(LiveImplant, a_preloaded_needle_leaves_its_train_where_it_was_held_as_it_is
   EXPECT_NEAR(page.implant["train_from_mm"], plane_mm, 0.1);
   EXPECT_EQ(at.dropped(), 0u) << "nothing is left while the needle rests";
   page.command(R"({"do":"drop"})");
-  ASSERT_TRUE(page.until([&] { return !page.notices.empty(); }));
-  EXPECT_NE(page.notices.back()["text"].get<std::string>().find("left already"), std::string::npos);
+  EXPECT_SAYS(page.notice(), "left already");
   // Each seed is left when the tip has passed it.
   ASSERT_TRUE(at.go_to(at.drop_depth(0, 0) - 2.0));
   ASSERT_TRUE(page.until([&] { return at.dropped() == 1; }));

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "kept_token.hpp"
+#include "support/folder.hpp"
 
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
-#include <filesystem>
 #include <fstream>
 
 namespace fs = std::filesystem;
@@ -14,10 +12,8 @@ using stylet::serve::kept_token;
 namespace {
 
 struct KeptToken : testing::Test {
-  fs::path folder = fs::temp_directory_path() / ("stylet-kept-token-" + std::to_string(::getpid()));
+  stylet::test::Folder folder;
   fs::path file = folder / "stylet" / "live_token";
-  void SetUp() override { fs::remove_all(folder); }
-  void TearDown() override { fs::remove_all(folder); }
 };
 
 }  // namespace
@@ -46,7 +42,6 @@ TEST_F(KeptToken, that_others_could_read_or_that_is_damaged_is_replaced) {
 
 TEST_F(KeptToken, that_cannot_be_kept_is_a_new_one_each_time) {
   EXPECT_NE(kept_token(""), kept_token(""));
-  fs::create_directories(folder);
   std::ofstream(folder / "stylet") << "a file where the folder should be";
   const std::string token = kept_token(file);
   EXPECT_EQ(token.size(), 32u);

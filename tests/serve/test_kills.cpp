@@ -35,7 +35,7 @@ class ServingProcess {
     close(ends[1]);
     if (read(ends[0], &port_, sizeof port_) != sizeof port_) throw std::runtime_error("the server did not start");
     close(ends[0]);
-    folder_ = Folder::of(pid_);
+    folder_ = ProcessFolder::of(pid_);
   }
   ~ServingProcess() {
     if (pid_ > 0) kill();

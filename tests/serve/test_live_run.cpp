@@ -2,6 +2,7 @@
 // Pictures of a run while nothing moves.
 #include "live_run.hpp"
 #include "serving.hpp"
+#include "support/value_of.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +20,7 @@ namespace {
 
 /// A run whose needle was pushed into the box and is paused.
 struct Paused {
-  Folder folder;
+  ProcessFolder folder;
   OpenModel open;
   std::shared_ptr<const DisplayField> field;
   std::unique_ptr<LiveRun> run;
@@ -28,18 +29,14 @@ struct Paused {
     open.model = compiled(hole_scenario());
     open.points.nodes.resize(static_cast<std::size_t>(open.model->mesh().node_count()));
     std::iota(open.points.nodes.begin(), open.points.nodes.end(), Index{0});
-    auto made = DisplayField::prepare(open.model);
-    if (!made) throw std::runtime_error(made.error().message());
-    field = *made;
+    field = value_of(DisplayField::prepare(open.model));
     if (with_field) open.field = field;
     RunnerSettings settings;
     settings.period_s = 4e-3;
     settings.late_after_s = 0.5;
     settings.realtime_scheduling = false;
     settings.lock_memory = false;
-    auto started = LiveRun::start(open, 0, folder.path, settings, 10.0, nullptr);
-    if (!started) throw std::runtime_error(started.error().message());
-    run = std::move(*started);
+    run = value_of(LiveRun::start(open, 0, folder.path, settings, 10.0, nullptr));
     HandTarget hand;
     hand.depth_mm = 20.0;
     hand.speed_mm_per_s = 100.0;

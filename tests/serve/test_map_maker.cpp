@@ -100,8 +100,7 @@ TEST(MapMaker, of_a_server_tells_every_page) {
   watcher->command(R"({"do":"predict","on":1})");
   EXPECT_TRUE(watcher->until([&] { return !watcher->notices.empty(); })) << "it does not hold the needle";
 
-  holder->command(R"({"do":"take"})");
-  ASSERT_TRUE(holder->until([&] { return holder->status.value("you_hold", false); }));
+  ASSERT_TRUE(holder->take());
   holder->command(R"({"do":"predict","on":1})");
   EXPECT_TRUE(watcher->until([&] { return watcher->map.value("predicted", 0) >= 1; }));
   const auto& holes = watcher->map["map"]["holes"];

@@ -5,6 +5,7 @@
 #include "stylet/io/recording_io.hpp"
 #include "stylet/io/scenario_io.hpp"
 #include "stylet/sim/recorded_steps.hpp"
+#include "support/value_of.hpp"
 
 #include <sys/stat.h>
 
@@ -29,10 +30,8 @@ TEST(Server, a_hand_at_a_page_pushes_the_needle_in_and_sees_force_and_events) {
   EXPECT_EQ(client->scene["cases"], nlohmann::json({"first", "second"}));
   EXPECT_EQ(client->scene["insertions"][0]["hole"], "D4");
   EXPECT_LT(client->depth_mm, 0.0F) << "before the skin";
-  client->command(R"({"do":"take"})");
-  ASSERT_TRUE(client->until([&] { return client->status.value("you_hold", false); }));
-  client->hand(28.0F, 60.0F);
-  ASSERT_TRUE(client->until([&] { return client->depth_mm > 27.9F; }));
+  ASSERT_TRUE(client->take());
+  ASSERT_TRUE(client->go_to(28.0F, 60.0F));
   EXPECT_TRUE(client->has_event("skin_contact"));
   EXPECT_TRUE(client->has_event("puncture"));
   EXPECT_GT(client->most_N, 0.1F);
@@ -46,28 +45,24 @@ TEST(Server, only_who_holds_the_needle_moves_it_and_it_changes_hands) {
   const Serving serving;
   const auto first = ready_client(serving);
   const auto second = ready_client(serving);
-  first->command(R"({"do":"take"})");
-  ASSERT_TRUE(first->until([&] { return first->status.value("you_hold", false); }));
+  ASSERT_TRUE(first->take());
   second->hand(20.0F, 100.0F);
   second->command(R"({"do":"pause"})");
   ASSERT_TRUE(second->until([&] { return !second->notices.empty(); })) << "is told why not";
-  const double then = second->time_s;
-  ASSERT_TRUE(second->until([&] { return second->time_s > then + 0.2; })) << "no pause";
+  ASSERT_TRUE(second->passes(0.2)) << "no pause";
   EXPECT_LT(second->depth_mm, 0.0F);
   second->command(R"({"do":"take"})");
   ASSERT_TRUE(first->until([&] { return first->status.value("asking", 0) == 1; }));
   first->command(R"({"do":"release"})");
   ASSERT_TRUE(second->until([&] { return second->status.value("you_hold", false); }));
-  second->hand(5.0F, 100.0F);
-  ASSERT_TRUE(second->until([&] { return second->depth_mm > 4.9F; }));
+  ASSERT_TRUE(second->go_to(5.0F, 100.0F));
 }
 
 TEST(Server, the_needle_rests_when_its_holder_goes) {
   const Serving serving;
   auto holder = ready_client(serving);
   const auto watcher = ready_client(serving);
-  holder->command(R"({"do":"take"})");
-  ASSERT_TRUE(holder->until([&] { return holder->status.value("you_hold", false); }));
+  ASSERT_TRUE(holder->take());
   ASSERT_TRUE(watcher->until([&] { return watcher->status.value("held", false); }));
   holder->hand(100.0F, 5.0F);
   ASSERT_TRUE(holder->until([&] { return holder->depth_mm > 0.0F; }));
@@ -105,9 +100,8 @@ TEST(Server, a_replay_leaves_the_live_needle_as_it_was) {
   const Serving serving;
   const auto client = ready_client(serving);
   client->command(R"({"do":"take"})");
-  client->hand(15.0F, 80.0F);
-  ASSERT_TRUE(client->until([&] { return client->depth_mm > 14.9F; }));
-  const std::string first = client->status["recording"]["name"];
+  ASSERT_TRUE(client->go_to(15.0F, 80.0F));
+  const std::string first = client->recording();
   const auto kinds = [&] {  // kinds of the events of this insertion
     std::vector<std::string> names;
     for (const auto& event : client->events) {
@@ -118,46 +112,41 @@ TEST(Server, a_replay_leaves_the_live_needle_as_it_was) {
   };
   client->events.clear();
   client->command(R"({"do":"reset"})");
-  ASSERT_TRUE(client->until([&] { return client->status["recording"]["name"] != first; }));
+  ASSERT_TRUE(client->until([&] { return client->recording() != first; }));
   client->hand(22.0F, 80.0F);
   ASSERT_TRUE(client->until([&] { return client->depth_mm > 21.9F && kinds().size() > 1; }));
-  const double then = client->time_s;
-  ASSERT_TRUE(client->until([&] { return client->time_s > then + 0.2; }));
-  const std::string name = client->status["recording"]["name"];
+  ASSERT_TRUE(client->passes(0.2));
+  const std::string name = client->recording();
   const double stood_at = client->time_s;
   const float force = client->force_N;
   const std::vector<std::string> before = kinds();
 
-  client->command(R"({"do":"replay","name":")" + first + "\"}");
-  ASSERT_TRUE(client->until([&] { return client->status.value("mode", "") == "replay" && (client->bits & 2U) != 0; }));
+  ASSERT_TRUE(client->replay(first));
   client->hand(0.0F, 80.0F);  // ignored, because this viewer does not hold the needle
   client->events.clear();
-  client->command(R"({"do":"live"})");
-  ASSERT_TRUE(client->until([&] { return client->status.value("mode", "") == "live" && (client->bits & 2U) == 0; }));
+  ASSERT_TRUE(client->back_to_live());
   EXPECT_NEAR(client->depth_mm, 22.0F, 1e-3F);
   EXPECT_NEAR(client->force_N, force, 0.05F);
   EXPECT_GE(client->time_s, stood_at) << "its time goes on";
   EXPECT_LT(client->time_s, stood_at + 5.0) << "and did not while it was away";
-  EXPECT_EQ(client->status["recording"]["name"], name) << "the same recording";
+  EXPECT_EQ(client->recording(), name) << "the same recording";
   EXPECT_GT(client->samples, 50u) << "the whole curve";
   EXPECT_EQ(kinds(), before);
   const double back_at = client->time_s;
   ASSERT_TRUE(client->until([&] { return client->time_s > back_at + 0.3; })) << "it runs";
   EXPECT_NEAR(client->depth_mm, 22.0F, 1e-3F) << "without a hand it stays";
-  client->hand(26.0F, 80.0F);
-  ASSERT_TRUE(client->until([&] { return client->depth_mm > 25.9F; }));
+  ASSERT_TRUE(client->go_to(26.0F, 80.0F));
   serving.server->stop();
 
-  const auto run = read_recording(serving.folder.path / name / "run.h5");
-  ASSERT_TRUE(run.ok()) << run.error().message();
+  const auto run = value_of(read_recording(serving.folder.path / name / "run.h5"));
   double time = 0.0;
-  const RecordedSteps steps(run->steps);
+  const RecordedSteps steps(run.steps);
   for (std::int64_t k = 0; k < steps.count(); ++k) {
     const Step step = steps.at(k);
     ASSERT_NEAR(step.time_s, time + step.dt_s, 1e-9) << "a gap in the recording";
     time = step.time_s;
   }
-  EXPECT_NEAR(run->steps.back().base_depth_mm, 26.0, 0.2);
+  EXPECT_NEAR(run.steps.back().base_depth_mm, 26.0, 0.2);
   EXPECT_GT(time, back_at);
 }
 
@@ -170,30 +159,27 @@ TEST(Server, a_case_that_cannot_be_loaded_leaves_needle_and_replay_as_they_were)
   });
   const auto client = ready_client(serving);
   client->command(R"({"do":"take"})");
-  const std::string first = client->status["recording"]["name"];
-  client->hand(5.0F, 80.0F);
-  ASSERT_TRUE(client->until([&] { return client->depth_mm > 4.9F; }));
+  const std::string first = client->recording();
+  ASSERT_TRUE(client->go_to(5.0F, 80.0F));
   client->command(R"({"do":"reset"})");
-  ASSERT_TRUE(client->until([&] { return client->status["recording"]["name"] != first; }));
+  ASSERT_TRUE(client->until([&] { return client->recording() != first; }));
   client->hand(15.0F, 80.0F);
   ASSERT_TRUE(client->until([&] { return client->depth_mm > 14.9995F; }));
-  const std::string name = client->status["recording"]["name"];
+  const std::string name = client->recording();
   const std::uint32_t scenes = client->scenes;
   const auto goes_on = [&] {
     const double then = client->time_s;
     ASSERT_TRUE(client->until([&] { return client->ready() && client->time_s > then + 0.2; }));
     EXPECT_NEAR(client->depth_mm, 15.0F, 1e-3F);
-    EXPECT_EQ(client->status["recording"]["name"], name);
+    EXPECT_EQ(client->recording(), name);
   };
 
   client->command(R"({"do":"case","index":2})");
-  ASSERT_TRUE(client->until([&] { return client->notices.size() == 1; }));
-  EXPECT_SAYS(client->notices[0]["text"].get<std::string>(), "it is broken");
+  EXPECT_SAYS(client->notice(1), "it is broken");
   goes_on();
   EXPECT_EQ(client->scenes, scenes) << "nothing else was shown";
 
-  client->command(R"({"do":"replay","name":")" + first + "\"}");
-  ASSERT_TRUE(client->until([&] { return client->status.value("mode", "") == "replay" && (client->bits & 2U) != 0; }));
+  ASSERT_TRUE(client->replay(first));
   client->command(R"({"do":"play","rate":0.1})");
   ASSERT_TRUE(client->until([&] { return client->time_s > 0.0 && client->status["replay"]["playing"] == true; }));
   const double shown_s = client->time_s;
@@ -203,11 +189,9 @@ TEST(Server, a_case_that_cannot_be_loaded_leaves_needle_and_replay_as_they_were)
   EXPECT_EQ(client->status["replay"]["name"], first);
   EXPECT_EQ(client->status["replay"]["playing"], true);
   ASSERT_TRUE(client->until([&] { return client->time_s > shown_s; })) << "it goes on";
-  client->command(R"({"do":"live"})");
-  ASSERT_TRUE(client->until([&] { return client->status.value("mode", "") == "live" && (client->bits & 2U) == 0; }));
+  ASSERT_TRUE(client->back_to_live());
   goes_on();
-  client->hand(18.0F, 80.0F);
-  ASSERT_TRUE(client->until([&] { return client->depth_mm > 17.9F; }));
+  ASSERT_TRUE(client->go_to(18.0F, 80.0F));
 }
 
 TEST(Server, says_in_which_regions_the_needle_is) {
@@ -222,20 +206,6 @@ TEST(Server, says_in_which_regions_the_needle_is) {
   for (const auto& region : client->scene["regions"]) EXPECT_EQ(region["spared"], false) << region;
 }
 
-TEST(Server, pauses_steps_and_goes_on) {
-  const Serving serving;
-  const auto client = ready_client(serving);
-  client->command(R"({"do":"take"})");
-  client->command(R"({"do":"pause"})");
-  ASSERT_TRUE(client->until([&] { return (client->bits & 1U) != 0; }));
-  const double stands = client->time_s;
-  client->command(R"({"do":"step","count":3})");
-  ASSERT_TRUE(client->until([&] { return client->time_s > stands + 0.0119; }));
-  EXPECT_NEAR(client->time_s, stands + 3 * 4e-3, 1e-9);
-  client->command(R"({"do":"resume"})");
-  ASSERT_TRUE(client->until([&] { return client->time_s > stands + 0.1; }));
-}
-
 TEST(Server, another_hole_another_case_and_back_to_the_start) {
   const Serving serving;
   const auto client = ready_client(serving);
@@ -248,8 +218,7 @@ TEST(Server, another_hole_another_case_and_back_to_the_start) {
   EXPECT_NE(client->notices[0]["text"].get<std::string>().find("Z9"), std::string::npos);
   client->command(R"({"do":"hole","hole":"A1"})");
   ASSERT_TRUE(client->until([&] { return client->notices.size() == 2; })) << "it misses the patient";
-  client->hand(10.0F, 100.0F);
-  ASSERT_TRUE(client->until([&] { return client->depth_mm > 9.9F; })) << "the one before goes on";
+  ASSERT_TRUE(client->go_to(10.0F, 100.0F)) << "the one before goes on";
   client->command(R"({"do":"reset"})");
   ASSERT_TRUE(client->until([&] { return client->depth_mm < 0.0F; }));
   client->command(R"({"do":"case","index":1})");
@@ -262,53 +231,45 @@ TEST(Server, a_recording_replays_in_the_page_and_repeats_to_the_last_bit) {
   Serving serving;
   const auto client = ready_client(serving);
   client->command(R"({"do":"take"})");
-  client->hand(25.0F, 80.0F);
-  ASSERT_TRUE(client->until([&] { return client->depth_mm > 24.9F; }));
-  client->hand(10.0F, 80.0F);
-  ASSERT_TRUE(client->until([&] { return client->depth_mm < 10.1F; }));
+  ASSERT_TRUE(client->go_to(25.0F, 80.0F));
+  ASSERT_TRUE(client->go_to(10.0F, 80.0F));
   const double rests_from = client->time_s + 0.2;
   ASSERT_TRUE(client->until([&] { return client->time_s > rests_from + 1.0; }));
-  client->hand(8.0F, 80.0F);
-  ASSERT_TRUE(client->until([&] { return client->depth_mm < 8.1F; }));
-  const std::string name = client->status["recording"]["name"];
+  ASSERT_TRUE(client->go_to(8.0F, 80.0F));
+  const std::string name = client->recording();
   client->command(R"({"do":"reset"})");  // completes the recording
-  ASSERT_TRUE(client->until([&] { return client->status["recording"]["name"] != name; }));
+  ASSERT_TRUE(client->until([&] { return client->recording() != name; }));
 
   const auto csv = get(serving.port(), "/recordings/" + name + "/forces.csv");
   EXPECT_EQ(csv.result(), http::status::ok);
   EXPECT_EQ(csv.body().substr(0, 6), "time_s");
 
-  client->command(R"({"do":"replay","name":")" + name + "\"}");
-  ASSERT_TRUE(client->until([&] { return client->status.value("mode", "") == "replay" && (client->bits & 2U) != 0; }));
+  ASSERT_TRUE(client->replay(name));
   EXPECT_GT(client->samples, 100u) << "the whole curve";
   const double duration = client->status["replay"]["duration_s"];
   client->command(R"({"do":"seek","time_s":)" + std::to_string(0.5 * duration) + "}");
   ASSERT_TRUE(client->until([&] { return std::abs(client->time_s - 0.5 * duration) < 1e-5; }));
   client->command(R"({"do":"play","rate":20})");
   ASSERT_TRUE(client->until([&] { return client->time_s >= duration - 1e-9; }));
-  client->command(R"({"do":"live"})");
-  ASSERT_TRUE(client->until([&] { return client->status.value("mode", "") == "live" && (client->bits & 2U) == 0; }));
+  ASSERT_TRUE(client->back_to_live());
   serving.server->stop();
 
-  const auto run = read_recording(serving.folder.path / name / "run.h5");
-  ASSERT_TRUE(run.ok()) << run.error().message();
-  ASSERT_GT(run->steps.size(), 100u);
-  EXPECT_FALSE(run->frames.empty());
-  EXPECT_FALSE(run->events.empty());
+  const auto run = value_of(read_recording(serving.folder.path / name / "run.h5"));
+  ASSERT_GT(run.steps.size(), 100u);
+  EXPECT_FALSE(run.frames.empty());
+  EXPECT_FALSE(run.events.empty());
   // Of a rest only its end is recorded. Steps of another duration do not count as equal.
   int at_rest = 0;
-  for (const Frame& frame : run->frames)
-    at_rest += frame.time_s > rests_from && frame.time_s < rests_from + 0.9 ? 1 : 0;
+  for (const Frame& frame : run.frames) at_rest += frame.time_s > rests_from && frame.time_s < rests_from + 0.9 ? 1 : 0;
   EXPECT_LE(at_rest, 1);
   std::int64_t rest = 0;
-  for (const Step& step : run->steps) rest = std::max(rest, step.rest_steps);
+  for (const Step& step : run.steps) rest = std::max(rest, step.rest_steps);
   EXPECT_GT(rest, 20) << "steps at rest are only counted";
-  const auto scenario = parse_scenario(run->info.scenario_text, "recording");
-  ASSERT_TRUE(scenario.ok()) << scenario.error().message();
+  const auto scenario = value_of(parse_scenario(run.info.scenario_text, "recording"));
   Kept kept;
-  const auto again = run_recorded(compiled(*scenario, run->mesh), run->steps, kept);
+  const auto again = run_recorded(compiled(scenario, run.mesh), run.steps, kept);
   ASSERT_TRUE(again.ok()) << again.error().message();
-  const RecordedSteps recorded(run->steps);
+  const RecordedSteps recorded(run.steps);
   ASSERT_EQ(static_cast<std::int64_t>(kept.steps.size()), recorded.count());
   for (std::size_t k = 0; k < kept.steps.size(); ++k) {
     const Step a = recorded.at(static_cast<std::int64_t>(k));
@@ -331,8 +292,7 @@ TEST(Server, malformed_messages_are_dropped_and_counted) {
   for (int k = 0; k < 10; ++k) client->send("nonsense", 8);
   client->command("{");
   ASSERT_TRUE(client->until([&] { return client->status.value("dropped_messages", 0) == 11; }));
-  client->command(R"({"do":"take"})");
-  EXPECT_TRUE(client->until([&] { return client->status.value("you_hold", false); })) << "still heard";
+  EXPECT_TRUE(client->take()) << "still heard";
 }
 
 TEST(Server, a_message_too_long_or_a_flood_ends_the_connection_and_nothing_else) {
@@ -356,8 +316,7 @@ TEST(Server, a_message_too_long_or_a_flood_ends_the_connection_and_nothing_else)
   EXPECT_TRUE(ends([&] {
     for (int k = 0; k < 1'000'000; ++k) flood.send("nonsense", 8);
   }));
-  const double then = good->time_s;
-  EXPECT_TRUE(good->until([&] { return good->time_s > then + 0.2; }));
+  EXPECT_TRUE(good->passes(0.2));
 }
 
 TEST(Server, a_viewer_that_does_not_read_loses_pictures_and_keeps_nobody_waiting) {
@@ -402,7 +361,6 @@ TEST(Server, asks_also_on_this_machine_for_the_token) {
 }
 
 TEST(Server, makes_a_token_and_keeps_it_for_the_next_start) {
-  const Folder folder;
   const auto token_with = [&](const std::filesystem::path& file) {
     const Serving serving([&](serve::ServerSettings& s) {
       s.asks_for_token = true;
@@ -427,8 +385,7 @@ TEST(Server, a_holder_who_does_not_answer_any_more_loses_the_needle) {
   const Serving serving([](serve::ServerSettings& s) { s.silence_s = 1.0; });
   const auto watcher = ready_client(serving);
   const auto holder = ready_client(serving);
-  holder->command(R"({"do":"take"})");
-  ASSERT_TRUE(holder->until([&] { return holder->status.value("you_hold", false); }));
+  ASSERT_TRUE(holder->take());
   holder->hand(100.0F, 1.0F);
   // From here on the holder reads nothing and so answers no ping, while its connection stays open.
   ASSERT_TRUE(watcher->until([&] { return watcher->status.value("held", false); }));
@@ -443,17 +400,14 @@ TEST(Server, a_holder_who_does_not_answer_any_more_loses_the_needle) {
   then = watcher->time_s;
   ASSERT_TRUE(watcher->until([&] { return watcher->time_s > then + 0.3; }));
   EXPECT_EQ(watcher->depth_mm, there) << "the needle stays where it was";
-  watcher->command(R"({"do":"take"})");
-  ASSERT_TRUE(watcher->until([&] { return watcher->status.value("you_hold", false); }));
+  ASSERT_TRUE(watcher->take());
 }
 
 TEST(Server, who_answers_pings_stays_however_little_it_says) {
   const Serving serving([](serve::ServerSettings& s) { s.silence_s = 0.5; });
   const auto holder = ready_client(serving);
-  holder->command(R"({"do":"take"})");
-  ASSERT_TRUE(holder->until([&] { return holder->status.value("you_hold", false); }));
-  const double then = holder->time_s;
-  ASSERT_TRUE(holder->until([&] { return holder->time_s > then + 2.0; }));
+  ASSERT_TRUE(holder->take());
+  ASSERT_TRUE(holder->passes(2.0));
   EXPECT_EQ(holder->status["you_hold"], true);
 }
 
@@ -493,17 +447,14 @@ TEST(Server, warns_of_a_disk_that_gets_full_and_goes_on_without_recording_when_i
   EXPECT_SAYS(recording("warning"), "0.5 GB");
   EXPECT_EQ(recording("problem"), "");
   client->command(R"({"do":"take"})");
-  client->hand(5.0F, 100.0F);
-  ASSERT_TRUE(client->until([&] { return client->depth_mm > 4.9F; }));
+  ASSERT_TRUE(client->go_to(5.0F, 100.0F));
   free = 100'000'000;
   ASSERT_TRUE(client->until([&] { return !recording("problem").empty(); }));
   EXPECT_SAYS(recording("problem"), "nearly full");
-  client->hand(10.0F, 100.0F);
-  ASSERT_TRUE(client->until([&] { return client->depth_mm > 9.9F; })) << "the simulation goes on";
-  const auto run = read_recording(recordings_of(serving).at(0) / "run.h5");
-  ASSERT_TRUE(run.ok()) << run.error().message();
-  EXPECT_GT(run->steps.back().base_depth_mm, 4.0) << "what was recorded before is whole";
-  EXPECT_LT(run->steps.back().base_depth_mm, 9.0);
+  ASSERT_TRUE(client->go_to(10.0F, 100.0F)) << "the simulation goes on";
+  const auto run = value_of(read_recording(recordings_of(serving).at(0) / "run.h5"));
+  EXPECT_GT(run.steps.back().base_depth_mm, 4.0) << "what was recorded before is whole";
+  EXPECT_LT(run.steps.back().base_depth_mm, 9.0);
   const std::lock_guard lock(mutex);
   EXPECT_SAYS(said, "0.5 GB");
   EXPECT_SAYS(said, "nearly full");
@@ -520,8 +471,7 @@ TEST(Server, removes_old_recordings_but_not_the_one_it_replays) {
   ASSERT_TRUE(client->until([&] { return !recording("problem").empty(); })) << "it takes more by itself";
   EXPECT_SAYS(recording("problem"), "--keep");
   client->command(R"({"do":"take"})");
-  client->command(R"({"do":"replay","name":")" + first + "\"}");
-  ASSERT_TRUE(client->until([&] { return client->status.value("mode", "") == "replay"; }));
+  ASSERT_TRUE(client->replay(first));
   // Waits longer than a second, because a recording's name has the second of its start, and a removed name may be
   // reused.
   std::this_thread::sleep_for(std::chrono::milliseconds(1200));

@@ -174,18 +174,6 @@ TEST(Wire, a_picture_has_its_text_and_its_values) {
   EXPECT_TRUE(read.at_end());
 }
 
-TEST(Wire, a_key_of_the_pictures_is_set_to_a_number) {
-  const auto decoded = wire::decode(command(R"({"do":"set","key":"probe.lift_mm","value":8.5})"));
-  const Command* set = as_command(decoded);
-  ASSERT_NE(set, nullptr);
-  EXPECT_EQ(set->what, Command::Do::set);
-  EXPECT_EQ(set->text, "probe.lift_mm");
-  EXPECT_EQ(set->number, 8.5);
-  EXPECT_FALSE(wire::decode(command(R"({"do":"set","key":"probe.lift_mm"})"))) << "no value";
-  EXPECT_FALSE(wire::decode(command(R"({"do":"set","key":"probe.lift_mm","value":"8"})"))) << "no number";
-  EXPECT_FALSE(wire::decode(command(R"({"do":"set","key":3,"value":8})"))) << "no key";
-}
-
 TEST(Wire, a_hand_is_taken_as_it_is_said) {
   const auto decoded = wire::decode(hand({12.5F, 20.F, 90.F, -1.F, 2.F}));
   ASSERT_TRUE(decoded);
@@ -200,21 +188,23 @@ TEST(Wire, a_hand_is_taken_as_it_is_said) {
 }
 
 TEST(Wire, commands_carry_what_they_need) {
-  const auto hole = wire::decode(command(R"({"do":"hole","hole":"d3.5"})"));
-  ASSERT_NE(as_command(hole), nullptr);
-  EXPECT_EQ(as_command(hole)->what, Command::Do::hole);
-  EXPECT_EQ(as_command(hole)->text, "d3.5");
-  const auto seek = wire::decode(command(R"({"do":"seek","time_s":1.5})"));
-  ASSERT_NE(as_command(seek), nullptr);
-  EXPECT_EQ(as_command(seek)->number, 1.5);
-  const auto predict = wire::decode(command(R"({"do":"predict","on":1})"));
-  ASSERT_NE(as_command(predict), nullptr);
-  EXPECT_EQ(as_command(predict)->what, Command::Do::predict);
-  EXPECT_EQ(as_command(predict)->number, 1.0);
-  const auto needle = wire::decode(command(R"({"do":"needle","index":3})"));
-  ASSERT_NE(as_command(needle), nullptr);
-  EXPECT_EQ(as_command(needle)->what, Command::Do::needle);
-  EXPECT_EQ(as_command(needle)->number, 3.0);
+  struct Case {
+    const char* text;
+    Command expected;
+  };
+  for (const Case& c :
+       {Case{R"({"do":"hole","hole":"d3.5"})", {Command::Do::hole, "d3.5", 0.0}},
+        Case{R"({"do":"seek","time_s":1.5})", {Command::Do::seek, "", 1.5}},
+        Case{R"({"do":"predict","on":1})", {Command::Do::predict, "", 1.0}},
+        Case{R"({"do":"needle","index":3})", {Command::Do::needle, "", 3.0}},
+        Case{R"({"do":"set","key":"probe.lift_mm","value":8.5})", {Command::Do::set, "probe.lift_mm", 8.5}}}) {
+    const auto decoded = wire::decode(command(c.text));
+    const Command* taken = as_command(decoded);
+    ASSERT_NE(taken, nullptr) << c.text;
+    EXPECT_EQ(taken->what, c.expected.what) << c.text;
+    EXPECT_EQ(taken->text, c.expected.text) << c.text;
+    EXPECT_EQ(taken->number, c.expected.number) << c.text;
+  }
   for (const char* name : {"take", "release", "reset", "pause", "resume", "live", "drawn", "drop", "undo", "clear"})
     EXPECT_NE(as_command(wire::decode(command(std::string(R"({"do":")") + name + "\"}"))), nullptr) << name;
 }
@@ -236,7 +226,8 @@ TEST(Wire, what_is_malformed_is_nothing) {
   for (const char* text :
        {"", "{", "[]", "null", "{}", R"({"do":1})", R"({"do":"fly"})", R"({"do":"hole"})", R"({"do":"hole","hole":4})",
         R"({"do":"seek","time_s":"now"})", R"({"do":"step"})", R"({"do":"predict"})", R"({"do":"needle"})",
-        R"({"do":"seek","time_s":1e300})", R"({"do":"take")"})
+        R"({"do":"seek","time_s":1e300})", R"({"do":"take")", R"({"do":"set","key":"probe.lift_mm"})",
+        R"({"do":"set","key":"probe.lift_mm","value":"8"})", R"({"do":"set","key":3,"value":8})"})
     EXPECT_FALSE(wire::decode(command(text))) << text;
   EXPECT_FALSE(wire::decode(command(R"({"do":"hole","hole":")" + std::string(2000, 'x') + "\"}")));
 }

@@ -133,26 +133,26 @@ static size_t numbers_of(stylet_rt_sim* sim, double dt, double duration_s, doubl
   return n;
 }
 
-static double* read_expected(size_t* count) {
-  FILE* file = fopen(in_folder("box.numbers"), "rb");
-  double* numbers;
-  long size;
+/* Reads a whole file in the folder. @return its bytes, to be freed */
+static void* read_file(const char* name, size_t* size) {
+  FILE* file = fopen(in_folder(name), "rb");
+  void* bytes;
   if (file == NULL) exit(1);
   fseek(file, 0, SEEK_END);
-  size = ftell(file);
+  *size = (size_t)ftell(file);
   rewind(file);
-  *count = (size_t)size / sizeof *numbers;
-  numbers = malloc((size_t)size);
-  if (numbers == NULL || fread(numbers, 1, (size_t)size, file) != (size_t)size) exit(1);
+  bytes = malloc(*size);
+  if (bytes == NULL || fread(bytes, 1, *size, file) != *size) exit(1);
   fclose(file);
-  return numbers;
+  return bytes;
 }
 
 static int its_numbers_are_those_of_the_interface_in_cpp_to_the_last_bit(void) {
   stylet_rt_model* model = loaded();
   stylet_rt_sim* sim = created(model, 0);
-  size_t expected_count = 0, count;
-  double* expected = read_expected(&expected_count);
+  size_t size = 0, count;
+  double* expected = read_file("box.numbers", &size);
+  const size_t expected_count = size / sizeof *expected;
   double* numbers = malloc((2 * expected_count + 10000) * sizeof *numbers);
   if (numbers == NULL) return 1;
   count = numbers_of(sim, time_step(model), duration(model, 0), numbers);
@@ -219,24 +219,16 @@ static int files_that_are_no_model_are_refused_with_place_and_cure(void) {
 static int a_file_with_any_bit_changed_is_refused(void) {
   const char* wanted = getenv("STYLET_FLIPS");
   const int flips = wanted == NULL ? 100 : atoi(wanted);
-  FILE* file = fopen(in_folder("box.stylet"), "rb");
-  unsigned char* bytes;
-  long size;
+  size_t size = 0;
+  unsigned char* bytes = read_file("box.stylet", &size);
   int k;
-  if (file == NULL) exit(1);
-  fseek(file, 0, SEEK_END);
-  size = ftell(file);
-  rewind(file);
-  bytes = malloc((size_t)size);
-  CHECK(fread(bytes, 1, (size_t)size, file) == (size_t)size);
-  fclose(file);
   srand(20051026);
   for (k = 0; k < flips; ++k) {
-    const long at = (long)(((double)rand() / RAND_MAX) * (double)(size - 1));
+    const size_t at = (size_t)(((double)rand() / RAND_MAX) * (double)(size - 1));
     const unsigned char bit = (unsigned char)(1 << (rand() % 8));
+    FILE* file = fopen(in_folder("flipped.stylet"), "wb");
     bytes[at] ^= bit;
-    file = fopen(in_folder("flipped.stylet"), "wb");
-    CHECK(file != NULL && fwrite(bytes, 1, (size_t)size, file) == (size_t)size);
+    CHECK(file != NULL && fwrite(bytes, 1, size, file) == size);
     fclose(file);
     check_refused("flipped.stylet", at < 8 ? "not a saved model" : "stylet prepare");
     bytes[at] ^= bit;

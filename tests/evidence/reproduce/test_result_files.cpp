@@ -1,27 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The files of an invented reproduction: their names and keys, and that they appear complete or not at all.
 #include "stylet/evidence/reproduce/reproduction.hpp"
+#include "support/folder.hpp"
+#include "support/says.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <unistd.h>
-
-#include <algorithm>
-#include <fstream>
-#include <sstream>
+#include <utility>
 
 using namespace stylet;
+using namespace stylet::test;
 using namespace stylet::reproduce;
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string text_of(const fs::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
-}
 
 Figure6Run made_up_run(const Figure6Variant& variant) {
   Figure6Run run;
@@ -67,13 +60,8 @@ Reproduction made_up() {
 
 class ResultFiles : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("stylet-reproduce-" + std::to_string(::getpid()));
-    fs::remove_all(folder_);
-    fs::create_directory(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  fs::path folder_;
+  Folder temporary_;
+  fs::path folder_ = temporary_.path();
 };
 
 }  // namespace
@@ -81,19 +69,16 @@ class ResultFiles : public ::testing::Test {
 TEST_F(ResultFiles, a_new_folder_holds_everything_and_nothing_else_is_left) {
   const fs::path out = folder_ / "deep" / "out";
   ASSERT_TRUE(write_reproduction(made_up(), out / "").ok());
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(out)) names.push_back(entry.path().filename().string());
-  std::sort(names.begin(), names.end());
-  EXPECT_EQ(names, (std::vector<std::string>{"figure2.json", "figure5.csv", "figure6_bcs_repositioning.csv",
-                                             "figure6_default.csv", "figure6_woodbury_addition.csv", "report.html",
-                                             "reproduce.json", "table.csv"}));
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"figure2.json", "figure5.csv", "figure6_bcs_repositioning.csv",
+                                                     "figure6_default.csv", "figure6_woodbury_addition.csv",
+                                                     "report.html", "reproduce.json", "table.csv"}));
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "deep"), {}), 1) << "no part of a folder is left beside it";
 }
 
 TEST_F(ResultFiles, a_folder_that_exists_keeps_what_is_not_ours) {
   std::ofstream(folder_ / "mine.txt") << "mine";
   ASSERT_TRUE(write_reproduction(made_up(), folder_).ok());
-  EXPECT_EQ(text_of(folder_ / "mine.txt"), "mine");
+  EXPECT_EQ(content_of(folder_ / "mine.txt"), "mine");
   EXPECT_TRUE(fs::exists(folder_ / "reproduce.json"));
 }
 
@@ -120,16 +105,16 @@ TEST_F(ResultFiles, json_has_the_keys_that_are_promised) {
 
 TEST_F(ResultFiles, curves_and_table_are_sound_csv) {
   ASSERT_TRUE(write_reproduction(made_up(), folder_).ok());
-  const std::string curves = text_of(folder_ / "figure6_default.csv");
+  const std::string curves = content_of(folder_ / "figure6_default.csv");
   EXPECT_EQ(curves.substr(0, curves.find('\n')),
             "iteration,insertion,time_s,base_depth_mm,force_axial_N,force_sagittal_N,force_lateral_N,step_us,"
             "cumulative_s,remeshings,dk_dimension,contacts,sticking,events");
   EXPECT_NE(curves.find("2,1,0.003000,2.000000,0.200000000,0.000000000,0.000000000,5000.000,0.005200000,1,18,0,0,"
                         "puncture:prostate\n"),
             std::string::npos);
-  const std::string table = text_of(folder_ / "table.csv");
+  const std::string table = content_of(folder_ / "table.csv");
   EXPECT_NE(table.find("\"Mesh\",\"nodes \"\"n\"\"\",\"\",570,573,,\"a, note\"\n"), std::string::npos);
-  EXPECT_EQ(text_of(folder_ / "figure5.csv").substr(0, 33), "dim,change,inverse_s,bcs_s,woodbu");
+  EXPECT_EQ(content_of(folder_ / "figure5.csv").substr(0, 33), "dim,change,inverse_s,bcs_s,woodbu");
 }
 
 TEST_F(ResultFiles, the_page_stands_alone_and_escapes_what_it_is_given) {
@@ -137,10 +122,8 @@ TEST_F(ResultFiles, the_page_stands_alone_and_escapes_what_it_is_given) {
   ASSERT_TRUE(page.ok()) << page.error().message();
   EXPECT_EQ(page->find("{{"), std::string::npos);
   const std::string markup = page->substr(0, page->find("<script"));
-  EXPECT_EQ(markup.find("http://"), std::string::npos);
-  EXPECT_EQ(markup.find("https://"), std::string::npos);
-  EXPECT_NE(markup.find("stylet reproduce -o out &lt;&amp;&gt;"), std::string::npos);
-  EXPECT_NE(markup.find("Not a medical device"), std::string::npos);
+  expect_silent(markup, {"http://", "https://"});
+  expect_says(markup, {"stylet reproduce -o out &lt;&amp;&gt;", "Not a medical device"});
   for (const char* id : {"figure5-plot", "cumulative-plot", "forces-default", "dimension-plot", "contours", "surface"})
     EXPECT_NE(markup.find("id=\"" + std::string(id) + "\""), std::string::npos) << id;
 }

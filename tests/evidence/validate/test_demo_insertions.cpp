@@ -3,6 +3,7 @@
 #include "stylet/measure/demo.hpp"
 #include "stylet/mesher/mesher.hpp"
 #include "stylet/sim/simulation.hpp"
+#include "support/value_of.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,12 +21,10 @@ double uniform(std::mt19937& random, double from, double to) {
 TEST(DemoInsertions, find_a_balance_in_all_but_a_few_steps) {
   constexpr int ways = 30;
   constexpr double dt_s = 1e-3, above_mm = 8.0;
-  auto meshed = measure::mesh_demo(500, {});
-  ASSERT_TRUE(meshed.ok()) << meshed.error().message();
-  const auto model = Model::compile(measure::demo_scenario(), std::move(meshed->mesh), "demo");
-  ASSERT_TRUE(model.ok()) << model.error().message();
-  const PlannedInsertion& plan = (*model)->insertions().front();
-  const double length = (*model)->scenario().needle.length_mm;
+  auto meshed = test::value_of(measure::mesh_demo(500, {}));
+  const auto model = test::value_of(Model::compile(measure::demo_scenario(), std::move(meshed.mesh), "demo"));
+  const PlannedInsertion& plan = model->insertions().front();
+  const double length = model->scenario().needle.length_mm;
   std::mt19937 random(5);
   long steps = 0, unbalanced = 0;
   for (int k = 0; k < ways; ++k) {
@@ -37,7 +36,7 @@ TEST(DemoInsertions, find_a_balance_in_all_but_a_few_steps) {
     const auto base_at = [&](double tip_depth) {
       return pose_along(entry + (tip_depth - length) * direction, direction);
     };
-    Simulation simulation(*model);
+    Simulation simulation(model);
     simulation.place(base_at(-above_mm), entry, direction);
     const auto count = std::lround((depth + above_mm) / (speed_mm_per_s * dt_s));
     for (long n = 1; n <= 2 * count; ++n) {

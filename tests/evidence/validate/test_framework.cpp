@@ -2,6 +2,7 @@
 // A validation with invented rows: rows that pass, are missed, are skipped or crash are all reported.
 #include "stylet/evidence/validate/context.hpp"
 #include "stylet/evidence/validate/validation.hpp"
+#include "support/says.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -14,6 +15,7 @@
 #include <stdexcept>
 
 using namespace stylet;
+using namespace stylet::test;
 using namespace stylet::validate;
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
@@ -145,14 +147,9 @@ TEST(Validation, json_has_the_promised_keys_and_null_where_nothing_was_judged) {
 TEST(Validation, the_page_shows_misses_at_the_top_and_in_their_row) {
   const auto page = validation_page(made_up());
   ASSERT_TRUE(page.ok()) << page.error().message();
-  EXPECT_NE(page->find("2 of 3 judged claims pass, 1 is MISSED."), std::string::npos);
-  EXPECT_NE(page->find("<a href=\"#misses\">claim of misses</a>"), std::string::npos);
-  EXPECT_NE(page->find("<i>✗</i>MISSED"), std::string::npos);
-  EXPECT_NE(page->find("the known reason."), std::string::npos);
-  EXPECT_NE(page->find("<i>–</i>skipped"), std::string::npos);
-  EXPECT_NE(page->find("<i>!</i>crashed"), std::string::npos);
-  EXPECT_NE(page->find("id=\"plot-passes\""), std::string::npos);
-  EXPECT_NE(page->find("a &lt;reference&gt;"), std::string::npos);
+  expect_says(*page,
+              {"2 of 3 judged claims pass, 1 is MISSED.", "<a href=\"#misses\">claim of misses</a>", "<i>✗</i>MISSED",
+               "the known reason.", "<i>–</i>skipped", "<i>!</i>crashed", "id=\"plot-passes\"", "a &lt;reference&gt;"});
   EXPECT_EQ(page->find("{{"), std::string::npos) << "an unfilled slot";
   EXPECT_EQ(page->find("http://"), std::string::npos) << "self-contained";
 }

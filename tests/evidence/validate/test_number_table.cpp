@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "evidence/validate/number_table.hpp"
+#include "support/folder.hpp"
+#include "support/value_of.hpp"
 
 #include <gtest/gtest.h>
-
-#include <unistd.h>
-
-#include <fstream>
 
 using namespace stylet;
 using namespace stylet::validate;
@@ -15,26 +13,23 @@ namespace {
 
 class NumberTable : public ::testing::Test {
  protected:
-  void SetUp() override { file_ = fs::temp_directory_path() / ("stylet-table-" + std::to_string(::getpid()) + ".csv"); }
-  void TearDown() override { fs::remove(file_); }
-  void write(const std::string& text) const { std::ofstream(file_) << text; }
-  fs::path file_;
+  void write(const std::string& text) const { test::write_file(file_, text); }
+  test::Folder folder_;
+  fs::path file_ = folder_ / "table.csv";
 };
 
 }  // namespace
 
 TEST_F(NumberTable, without_a_header_all_columns_are_read) {
   write("0.001,0.5\n0.002, 0.7\r\n");
-  const auto columns = read_number_table(file_);
-  ASSERT_TRUE(columns.ok());
-  EXPECT_EQ(*columns, (std::vector<std::vector<double>>{{0.001, 0.002}, {0.5, 0.7}}));
+  const auto columns = test::value_of(read_number_table(file_));
+  EXPECT_EQ(columns, (std::vector<std::vector<double>>{{0.001, 0.002}, {0.5, 0.7}}));
 }
 
 TEST_F(NumberTable, named_columns_come_in_the_order_asked_for_and_bad_lines_are_left_out) {
   write("a, b,c\n1,2,3\n4,,6\n7,8,9\n10,x,12\n");
-  const auto columns = read_number_table(file_, {"b", "a"});
-  ASSERT_TRUE(columns.ok());
-  EXPECT_EQ(*columns, (std::vector<std::vector<double>>{{2, 8}, {1, 7}}));
+  const auto columns = test::value_of(read_number_table(file_, {"b", "a"}));
+  EXPECT_EQ(columns, (std::vector<std::vector<double>>{{2, 8}, {1, 7}}));
 }
 
 TEST_F(NumberTable, a_missing_column_or_a_table_without_numbers_is_refused) {

@@ -6,6 +6,8 @@
 #include "stylet/evidence/validate/validation.hpp"
 #include "stylet/geom/box_mesh.hpp"
 #include "stylet/io/scenario_io.hpp"
+#include "support/says.hpp"
+#include "support/value_of.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,6 +17,7 @@
 #include <set>
 
 using namespace stylet;
+using namespace stylet::test;
 using namespace stylet::validate;
 
 TEST(Rows, have_a_name_of_their_own_and_say_what_is_claimed_and_against_what) {
@@ -52,10 +55,9 @@ TEST(Rows, that_algebra_decides_pass) {
   ValidateOptions options;
   options.only = {"patch_test",       "rigid_motions",     "uniaxial_bar",
                   "condensed_system", "needle_small_beam", "needle_large_beam"};
-  const auto validation = validate::validate(options);
-  ASSERT_TRUE(validation.ok());
-  ASSERT_EQ(validation->rows.size(), options.only.size());
-  for (const Row& row : validation->rows) {
+  const auto validation = value_of(validate::validate(options));
+  ASSERT_EQ(validation.rows.size(), options.only.size());
+  for (const Row& row : validation.rows) {
     EXPECT_EQ(row.verdict, Verdict::pass) << row.spec.id << ": " << row.finding.value << ", " << row.note();
     EXPECT_GT(row.finding.value, 0.0) << row.spec.id << ": nothing was computed";
   }
@@ -65,43 +67,37 @@ TEST(Rows, that_need_shared_data_are_skipped_plainly_without_it) {
   ValidateOptions options;
   options.only = {"step_time", "liver_recording", "tip_tracking"};
   options.data = "/nowhere";
-  const auto validation = validate::validate(options);
-  ASSERT_TRUE(validation.ok());
-  for (const Row& row : validation->rows) {
+  const auto validation = value_of(validate::validate(options));
+  for (const Row& row : validation.rows) {
     EXPECT_EQ(row.verdict, Verdict::skipped) << row.spec.id;
     EXPECT_NE(row.note().find("STYLET_SHARED_DATA"), std::string::npos) << row.note();
   }
 }
 
 TEST(CalculiX, computes_the_same_displacements) {
-  const auto validation = validate::validate({.only = {"calculix", "calculix_quadratic"}});
-  ASSERT_TRUE(validation.ok());
-  EXPECT_EQ(validation->rows.size(), 2u);
-  for (const Row& row : validation->rows) {
+  const auto validation = value_of(validate::validate({.only = {"calculix", "calculix_quadratic"}}));
+  EXPECT_EQ(validation.rows.size(), 2u);
+  for (const Row& row : validation.rows) {
     if (row.verdict == Verdict::skipped) GTEST_SKIP() << row.note();
     EXPECT_EQ(row.verdict, Verdict::pass) << row.finding.value << ", " << row.note();
   }
 }
 
 TEST(CalculiX, deck_has_every_node_element_support_and_load) {
-  const auto tissue = Tissue::build(box_mesh({0, 0, 0}, {10, 10, 10}, {1, 1, 1}), {{0.02, 0.45}}, {0, 1, 2});
-  ASSERT_TRUE(tissue.ok());
-  VecX f = VecX::Zero(3 * tissue->displacement_nodes());
+  const auto tissue = value_of(Tissue::build(box_mesh({0, 0, 0}, {10, 10, 10}, {1, 1, 1}), {{0.02, 0.45}}, {0, 1, 2}));
+  VecX f = VecX::Zero(3 * tissue.displacement_nodes());
   f[3 * 7 + 2] = -0.5;
-  const std::string deck = calculix_deck(*tissue, f);
-  EXPECT_NE(deck.find("8, 1.000000000000e+01, 1.000000000000e+01, 1.000000000000e+01\n"), std::string::npos);
-  EXPECT_NE(deck.find("*ELEMENT, TYPE=C3D4, ELSET=R0\n1, "), std::string::npos);
-  EXPECT_NE(deck.find("*ELASTIC\n2.000000000000e-02, 4.500000000000e-01\n"), std::string::npos);
-  EXPECT_NE(deck.find("*BOUNDARY\n1, 1, 3\n2, 1, 3\n3, 1, 3\n"), std::string::npos);
-  EXPECT_NE(deck.find("*CLOAD\n8, 3, -5.000000000000e-01\n"), std::string::npos);
+  const std::string deck = calculix_deck(tissue, f);
+  expect_says(deck, {"8, 1.000000000000e+01, 1.000000000000e+01, 1.000000000000e+01\n",
+                     "*ELEMENT, TYPE=C3D4, ELSET=R0\n1, ", "*ELASTIC\n2.000000000000e-02, 4.500000000000e-01\n",
+                     "*BOUNDARY\n1, 1, 3\n2, 1, 3\n3, 1, 3\n", "*CLOAD\n8, 3, -5.000000000000e-01\n"});
 }
 
 TEST(DemoScenario, is_the_demo_that_is_shipped) {
-  const auto shipped = read_scenario(STYLET_SCENARIOS "/demo.toml");
-  ASSERT_TRUE(shipped.ok()) << shipped.error().message();
+  const auto shipped = value_of(read_scenario(STYLET_SCENARIOS "/demo.toml"));
   Scenario ours = measure::demo_scenario();
-  ours.name = shipped->name;
-  EXPECT_EQ(to_toml(ours), to_toml(*shipped));
+  ours.name = shipped.name;
+  EXPECT_EQ(to_toml(ours), to_toml(shipped));
 }
 
 /// Root mean square difference of a row's curve from its reference, relative to the reference's largest value [%].
@@ -113,10 +109,9 @@ double rms_percent(const Curve& curve, const Curve& reference) {
 }
 
 TEST(LiverCurves, are_met_by_the_dent_that_stiffens_twice_as_nearly_as_by_any_linear_tissue) {
-  const auto validation = validate::validate({.only = {"liver_curve", "liver_other_curve"}});
-  ASSERT_TRUE(validation.ok());
-  ASSERT_EQ(validation->rows.size(), 2u);
-  for (const Row& row : validation->rows) {
+  const auto validation = value_of(validate::validate({.only = {"liver_curve", "liver_other_curve"}}));
+  ASSERT_EQ(validation.rows.size(), 2u);
+  for (const Row& row : validation.rows) {
     EXPECT_EQ(row.verdict, Verdict::pass) << row.finding.value << ", " << row.note();
     EXPECT_NE(row.spec.reference.find("NOT VERIFIED"), std::string::npos) << row.spec.reference;
     const std::vector<Curve>& curves = row.finding.plot.curves;

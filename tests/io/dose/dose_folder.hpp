@@ -1,30 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <gtest/gtest.h>
+#include "stylet/core/result.hpp"
+#include "support/folder.hpp"
+#include "support/value_of.hpp"
 
-#include <filesystem>
-#include <fstream>
-#include <string>
+#include <gtest/gtest.h>
 
 namespace stylet::testing_files {
 
-/// A test with a folder of its own, which is removed afterwards.
+/// Expects an input error whose message has this part.
+template <class T>
+void expect_refused(const Result<T>& result, const std::string& part) {
+  ASSERT_FALSE(result.ok()) << part;
+  EXPECT_EQ(result.error().kind, ErrorKind::input);
+  EXPECT_NE(result.error().message().find(part), std::string::npos) << result.error().message();
+  EXPECT_FALSE(result.error().cure.empty());
+}
+
+/// A test with a folder of its own.
 class InFolder : public testing::Test {
  protected:
-  void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder = std::filesystem::path(testing::TempDir()) / (std::string(info->test_suite_name()) + "_" + info->name());
-    std::filesystem::create_directories(folder);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder); }
-
   [[nodiscard]] std::filesystem::path file(const std::string& name, const std::string& text) const {
-    std::ofstream(folder / name) << text;
-    return folder / name;
+    return test::write_file(folder / name, text);
   }
 
-  std::filesystem::path folder;
+  test::Folder folder;
 };
 
 }  // namespace stylet::testing_files

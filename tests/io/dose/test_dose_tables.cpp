@@ -40,9 +40,7 @@ Json json_of(const SourceModel& s) {
 class SourceFile : public testing_files::InFolder {
  protected:
   void expect_error(const Json& json, const std::string& part) const {
-    const Result<SourceModel> source = read_source_model(file("source.json", json.dump()));
-    ASSERT_FALSE(source.ok()) << part;
-    EXPECT_NE(source.error().message().find(part), std::string::npos) << source.error().message();
+    testing_files::expect_refused(read_source_model(file("source.json", json.dump())), part);
   }
 };
 

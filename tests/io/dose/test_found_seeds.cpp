@@ -12,15 +12,8 @@ namespace {
 
 class FoundSeedFiles : public testing_files::InFolder {
  protected:
-  void expect_refused(const std::string& text, const std::string& part) const {
-    const Result<FoundSeeds> found = read_found_seeds(file("found.csv", text));
-    ASSERT_FALSE(found.ok()) << text;
-    expect_input(found.error(), part);
-  }
-  static void expect_input(const Error& error, const std::string& part) {
-    EXPECT_EQ(error.kind, ErrorKind::input);
-    EXPECT_NE(error.message().find(part), std::string::npos) << error.message();
-    EXPECT_FALSE(error.cure.empty());
+  void expect_error(const std::string& text, const std::string& part) const {
+    testing_files::expect_refused(read_found_seeds(file("found.csv", text)), part);
   }
   /// A plan with five seeds along z.
   static DosePlan row_of_seeds() {
@@ -63,20 +56,20 @@ TEST_F(FoundSeedFiles, can_be_the_plan_of_another_program) {
 
 TEST_F(FoundSeedFiles, name_the_place_of_each_fault) {
   const std::string head = "x_mm,y_mm,z_mm\n";
-  expect_refused("", "empty");
-  expect_refused(head, "no rows");
-  expect_refused("x_mm,z_mm\n1,2\n", "y_mm is missing");
-  expect_refused("x_mm,y_mm,z_mm,ax\n1,2,3,1\n", "ay is missing");
-  expect_refused("x_mm,y_mm,z_cm\n1,2,3\n", "z_cm");
-  expect_refused(head + "1,2,3\n1,inf,3\n", "line 3, column y_mm: 'inf'");
-  expect_refused(head + "1,2,3\n1,2,\n", "line 3, column z_mm: ''");
-  expect_refused(head + "1,2,3e9\n", "line 2");
-  expect_refused("x_mm,y_mm,z_mm,ax,ay,az\n1,2,3,0,0,0\n", "line 2: the axis (0, 0, 0) has no length");
+  expect_error("", "empty");
+  expect_error(head, "no rows");
+  expect_error("x_mm,z_mm\n1,2\n", "y_mm is missing");
+  expect_error("x_mm,y_mm,z_mm,ax\n1,2,3,1\n", "ay is missing");
+  expect_error("x_mm,y_mm,z_cm\n1,2,3\n", "z_cm");
+  expect_error(head + "1,2,3\n1,inf,3\n", "line 3, column y_mm: 'inf'");
+  expect_error(head + "1,2,3\n1,2,\n", "line 3, column z_mm: ''");
+  expect_error(head + "1,2,3e9\n", "line 2");
+  expect_error("x_mm,y_mm,z_mm,ax,ay,az\n1,2,3,0,0,0\n", "line 2: the axis (0, 0, 0) has no length");
   DosePlan temporary = row_of_seeds();
   temporary.implant = Implant::temporary;
   for (PlannedSource& source : temporary.sources) source.dwell_s = 1.0;
   ASSERT_TRUE(write_plan_json(temporary, folder / "temporary.json").ok());
-  expect_input(read_found_seeds(folder / "temporary.json").error(), "temporary implant");
+  testing_files::expect_refused(read_found_seeds(folder / "temporary.json"), "temporary implant");
 }
 
 TEST_F(FoundSeedFiles, that_have_a_seed_twice_say_so) {
@@ -96,11 +89,12 @@ TEST_F(FoundSeedFiles, of_another_frame_or_implant_are_refused_and_single_seeds_
   found.seeds[1].at_mm.y() = 600.0;  // a seed in the lung
   EXPECT_TRUE(check_found_seeds(found, plan).ok());
   found.seeds[1].at_mm.y() = 1600.0;
-  expect_input(check_found_seeds(found, plan).error(), "line 3: the seed at (3.0, 1600.0, 10.0) mm is 1600 mm away");
+  testing_files::expect_refused(check_found_seeds(found, plan),
+                                "line 3: the seed at (3.0, 1600.0, 10.0) mm is 1600 mm away");
   for (std::size_t k = 1; k < 4; ++k) found.seeds[k].at_mm = Vec3(0, -80, 0);
-  expect_input(check_found_seeds(found, plan).error(), "3 of 5 seeds are further than 30 mm");
+  testing_files::expect_refused(check_found_seeds(found, plan), "3 of 5 seeds are further than 30 mm");
   found.seeds.assign(11, {.at_mm = Vec3::Zero(), .axis = {}, .where = "found.csv"});
-  expect_input(check_found_seeds(found, plan).error(), "11 seeds were found, and 5 are planned");
+  testing_files::expect_refused(check_found_seeds(found, plan), "11 seeds were found, and 5 are planned");
 }
 
 }  // namespace

@@ -15,10 +15,7 @@ namespace {
 class PlanText : public testing_files::InFolder {
  protected:
   void expect_error(const std::string& name, const std::string& text, const std::string& part) const {
-    const Result<DosePlan> plan = read_plan(file(name, text));
-    ASSERT_FALSE(plan.ok()) << text;
-    EXPECT_EQ(plan.error().kind, ErrorKind::input);
-    EXPECT_NE(plan.error().message().find(part), std::string::npos) << plan.error().message();
+    testing_files::expect_refused(read_plan(file(name, text)), part);
   }
   [[nodiscard]] static std::string json(const std::string& rest) {
     return R"({"format": "stylet-plan", "version": 1, "units": "mm", "frame": "LPS", )" + rest + "}";
@@ -140,9 +137,7 @@ TEST_F(PlanText, in_a_scenario_may_give_lines_and_places_instead_of_holes_and_tr
   EXPECT_EQ(plan.sources[4].needle, "needle 2");
 
   const auto says = [&](const std::string& part) {
-    const Result<DosePlan> refused = plan_of_scenario(scenario, "case.toml");
-    ASSERT_FALSE(refused.ok());
-    EXPECT_NE(refused.error().message().find(part), std::string::npos) << refused.error().message();
+    testing_files::expect_refused(plan_of_scenario(scenario, "case.toml"), part);
   };
   scenario.plan.needles[1].train = "S-x-S";
   says("case.toml, plan.needle[1]: element 2 of the train 'S-x-S' is 'x'");

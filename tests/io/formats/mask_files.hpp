@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,22 @@ template <class T>
 void poke(std::string& bytes, std::size_t offset, T value) {
   bytes.replace(offset, sizeof value, reinterpret_cast<const char*>(&value), sizeof value);
 }
+
+/// The mask as NIfTI, with values of another type. @param code of the type in the header
+template <class T>
+std::string with_values(std::int16_t code, const std::function<double(int)>& value) {
+  const Mask mask;
+  std::string bytes = nifti(mask).substr(0, 352);
+  poke<std::int16_t>(bytes, 70, code);
+  poke<std::int16_t>(bytes, 72, 8 * sizeof(T));
+  for (const int label : mask.labels) {
+    const T v = static_cast<T>(value(label));
+    bytes.append(reinterpret_cast<const char*>(&v), sizeof v);
+  }
+  return bytes;
+}
+
+inline constexpr std::int16_t nifti_i16 = 4, nifti_f32 = 16, nifti_f64 = 64;
 
 /// NRRD header and data, LPS; `extra` are further header lines.
 std::string nrrd(const Mask& mask, const std::string& encoding = "raw", const std::string& extra = "",

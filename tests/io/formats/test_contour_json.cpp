@@ -23,38 +23,34 @@ TEST(ContourJson, what_is_written_comes_back_exactly) {
   ContourSet set = two_organs();
   set.rois[0].name = "Prostate \"left\" \\ ß";
   ASSERT_TRUE(write_contour_json(set, folder / "case.json").ok());
-  const Result<ContourSet> back = read_contour_json(folder / "case.json");
-  ASSERT_TRUE(back.ok()) << why(back);
-  EXPECT_EQ(largest_difference(set, *back), 0.0);
-  EXPECT_EQ(back->label, set.label);
-  EXPECT_EQ(back->frame_of_reference, set.frame_of_reference);
-  EXPECT_EQ(back->rois[1].type, "ORGAN");
-  EXPECT_EQ(back->rois[1].colour, set.rois[1].colour);
-  EXPECT_EQ(back->rois[1].number, 2);
-  EXPECT_EQ(back->source, (folder / "case.json").string());
+  const auto back = value_of(read_contour_json(folder / "case.json"));
+  EXPECT_EQ(largest_difference(set, back), 0.0);
+  EXPECT_EQ(back.label, set.label);
+  EXPECT_EQ(back.frame_of_reference, set.frame_of_reference);
+  EXPECT_EQ(back.rois[1].type, "ORGAN");
+  EXPECT_EQ(back.rois[1].colour, set.rois[1].colour);
+  EXPECT_EQ(back.rois[1].number, 2);
+  EXPECT_EQ(back.source, (folder / "case.json").string());
 }
 
 TEST(ContourJson, the_shortest_file_of_the_documentation_is_enough) {
   const Folder folder;
-  const Result<ContourSet> set = read_contour_json(write_file(folder / "case.json", small));
-  ASSERT_TRUE(set.ok()) << why(set);
-  ASSERT_EQ(set->rois.size(), 1U);
-  EXPECT_EQ(set->rois[0].contours.size(), 2U);
-  EXPECT_EQ(set->rois[0].contours[1].points[2], Vec3(10, 10, 5));
+  const auto set = value_of(read_contour_json(write_file(folder / "case.json", small)));
+  ASSERT_EQ(set.rois.size(), 1U);
+  EXPECT_EQ(set.rois[0].contours.size(), 2U);
+  EXPECT_EQ(set.rois[0].contours[1].points[2], Vec3(10, 10, 5));
 }
 
 TEST(ContourJson, a_repeated_first_point_is_dropped) {
-  const Result<ContourSet> set = with("[10,10,0]]", "[10,10,0],[0,0,0]]");
-  ASSERT_TRUE(set.ok()) << why(set);
-  EXPECT_EQ(set->rois[0].contours[0].points.size(), 3U);
+  const auto set = value_of(with("[10,10,0]]", "[10,10,0],[0,0,0]]"));
+  EXPECT_EQ(set.rois[0].contours[0].points.size(), 3U);
 }
 
 TEST(ContourJson, an_empty_structure_is_noted) {
-  const Result<ContourSet> set = with("\"structures\": [", "\"structures\": [{\"name\": \"PTV\", \"contours\": []}, ");
-  ASSERT_TRUE(set.ok()) << why(set);
-  EXPECT_EQ(set->rois.size(), 1U);
-  ASSERT_EQ(set->passed_over.size(), 1U);
-  EXPECT_EQ(set->passed_over[0].name, "PTV");
+  const auto set = value_of(with("\"structures\": [", "\"structures\": [{\"name\": \"PTV\", \"contours\": []}, "));
+  EXPECT_EQ(set.rois.size(), 1U);
+  ASSERT_EQ(set.passed_over.size(), 1U);
+  EXPECT_EQ(set.passed_over[0].name, "PTV");
 }
 
 TEST(ContourJson, an_unknown_key_is_refused_with_the_nearest_name) {
@@ -89,11 +85,10 @@ TEST(ContourJson, a_damaged_structure_is_refused_with_the_way_to_do_without_it_a
                  replaced(small, "\"structures\": [", R"("structures": [{"name": "Rectum", "contours": [[[0,0]]]}, )"));
   expect_refused(read_contour_json(file), {"'Rectum'", "skip = [\"Rectum\"] below [patient]"});
   const std::vector<std::string> skip{"RECTUM"};
-  const Result<ContourSet> set = read_contour_json(file, skip);
-  ASSERT_TRUE(set.ok()) << why(set);
-  EXPECT_EQ(set->rois.size(), 1U);
-  ASSERT_EQ(set->passed_over.size(), 1U);
-  EXPECT_EQ(set->passed_over[0].name, "Rectum");
+  const auto set = value_of(read_contour_json(file, skip));
+  EXPECT_EQ(set.rois.size(), 1U);
+  ASSERT_EQ(set.passed_over.size(), 1U);
+  EXPECT_EQ(set.passed_over[0].name, "Rectum");
 }
 
 TEST(ContourJson, two_structures_of_one_name_are_refused) {

@@ -33,22 +33,6 @@ void expect_same(const Result<LabelImage>& image, const Mask& mask) {
   EXPECT_LT((image->voxel_centre(1, 2, 3) - mask.origin - mask.axes * Vec3(1, 2, 3)).norm(), 1e-3);
 }
 
-/// The mask as NIfTI, with values of another type. @param code of the type in the header
-template <class T>
-std::string with_values(std::int16_t code, const std::function<double(int)>& value) {
-  const Mask mask;
-  std::string bytes = nifti(mask).substr(0, 352);
-  poke<std::int16_t>(bytes, 70, code);
-  poke<std::int16_t>(bytes, 72, 8 * sizeof(T));
-  for (const int label : mask.labels) {
-    const T v = static_cast<T>(value(label));
-    bytes.append(reinterpret_cast<const char*>(&v), sizeof v);
-  }
-  return bytes;
-}
-
-constexpr std::int16_t nifti_i16 = 4, nifti_f32 = 16, nifti_f64 = 64;
-
 /// The mask as NIfTI with a sform and the same qform, and then changed.
 std::string with_both_forms(const Mask& mask, const std::function<void(std::string&)>& change) {
   std::string bytes = nifti(mask, NiftiForm::sform);

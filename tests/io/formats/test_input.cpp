@@ -14,38 +14,32 @@ TEST(Input, each_kind_of_file_is_recognised_by_its_content) {
   ASSERT_TRUE(write_rtstruct(two_organs(), folder / "contours").ok());
   ASSERT_TRUE(write_contour_json(two_organs(), folder / "also_contours").ok());
   for (const char* name : {"contours", "also_contours"}) {
-    const auto input = read_input(folder / name);
-    ASSERT_TRUE(input.ok()) << why(input);
-    EXPECT_TRUE(std::holds_alternative<ContourSet>(*input));
+    const auto input = value_of(read_input(folder / name));
+    EXPECT_TRUE(std::holds_alternative<ContourSet>(input));
   }
   for (const std::string& bytes : {nifti(Mask()), gzipped(nifti(Mask())), nrrd(Mask()), metaimage(Mask())}) {
-    const auto input = read_input(write_file(folder / "mask", bytes));
-    ASSERT_TRUE(input.ok()) << why(input);
-    EXPECT_TRUE(std::holds_alternative<LabelImage>(*input));
+    const auto input = value_of(read_input(write_file(folder / "mask", bytes)));
+    EXPECT_TRUE(std::holds_alternative<LabelImage>(input));
   }
   for (const MeshFile& file : write_all_formats(two_region_box(), folder.path())) {
-    const auto input = read_input(file.path);
-    ASSERT_TRUE(input.ok()) << file.what << ": " << why(input);
-    EXPECT_TRUE(std::holds_alternative<TetMesh>(*input)) << file.what;
+    const auto input = value_of(read_input(file.path));
+    EXPECT_TRUE(std::holds_alternative<TetMesh>(input)) << file.what;
   }
-  const auto surface = read_input(write_file(folder / "s.obj", "v 0 0 0\nv 30 0 0\nv 0 30 0\nf 1 2 3\n"));
-  ASSERT_TRUE(surface.ok()) << why(surface);
-  EXPECT_TRUE(std::holds_alternative<std::vector<Surface>>(*surface));
+  const auto surface = value_of(read_input(write_file(folder / "s.obj", "v 0 0 0\nv 30 0 0\nv 0 30 0\nf 1 2 3\n")));
+  EXPECT_TRUE(std::holds_alternative<std::vector<Surface>>(surface));
 }
 
 TEST(Input, a_folder_with_one_structure_set_is_contours) {
   const Folder folder;
   ASSERT_TRUE(write_rtstruct(two_organs(), folder / "case.dcm").ok());
-  const auto input = read_input(folder.path());
-  ASSERT_TRUE(input.ok()) << why(input);
-  EXPECT_TRUE(std::holds_alternative<ContourSet>(*input));
+  const auto input = value_of(read_input(folder.path()));
+  EXPECT_TRUE(std::holds_alternative<ContourSet>(input));
 }
 
 TEST(Input, the_scale_reaches_the_mesh) {
   const Folder folder;
-  const auto input = read_input(write_file(folder / "m.msh", msh22_text(two_region_box())), {.scale = 2.0});
-  ASSERT_TRUE(input.ok()) << why(input);
-  EXPECT_NEAR(std::get<TetMesh>(*input).nodes[0].x(), -40.0, 1e-9);
+  const auto input = value_of(read_input(write_file(folder / "m.msh", msh22_text(two_region_box())), {.scale = 2.0}));
+  EXPECT_NEAR(std::get<TetMesh>(input).nodes[0].x(), -40.0, 1e-9);
 }
 
 TEST(Input, files_that_are_not_there_or_cannot_be_opened_are_refused) {

@@ -73,19 +73,16 @@ TEST(DicomSeg, has_its_voxels_where_the_same_mask_in_nrrd_has_them) {
     for (std::size_t n = 0; n < frame.labels.size(); ++n)
       frame.labels[n] = static_cast<std::uint8_t>(frame.labels[n] + (voxels(frame, in_urethra)[n] != 0 ? 2 : 0));
     for (std::uint8_t& label : frame.labels) label = label >= 2 ? 2 : label;
-    const auto seg = read_label_image(write_seg(folder / "seg.dcm", frame, gland_and_urethra()));
-    ASSERT_TRUE(seg.ok()) << why(seg);
-    const auto same = read_mask("same.nrrd", nrrd(frame));
-    ASSERT_TRUE(same.ok()) << why(same);
-    expect_same_labels(*seg, *same, frame);
+    const auto seg = value_of(read_label_image(write_seg(folder / "seg.dcm", frame, gland_and_urethra())));
+    const auto same = value_of(read_mask("same.nrrd", nrrd(frame)));
+    expect_same_labels(seg, same, frame);
   }
 }
 
 TEST(DicomSeg, segments_carry_their_label_and_the_meaning_of_their_code) {
   const Folder folder;
-  const auto input = read_input(write_seg(folder / "seg", Mask(), gland_and_urethra()));
-  ASSERT_TRUE(input.ok()) << why(input);
-  const auto& image = std::get<LabelImage>(*input);
+  const auto input = value_of(read_input(write_seg(folder / "seg", Mask(), gland_and_urethra())));
+  const auto& image = std::get<LabelImage>(input);
   EXPECT_EQ(image.names, (std::map<int, std::string>{{1, "Prostate"}, {2, "duct"}}));
   EXPECT_EQ(image.meanings, (std::map<int, std::string>{{1, "Prostate"}, {2, "Urethra"}}));
   EXPECT_TRUE(notes_say(image, "'duct' and 'Prostate' share 24 voxels"));
@@ -96,9 +93,8 @@ TEST(DicomSeg, a_skipped_segment_takes_no_voxel_from_what_lies_below) {
   const fs::path path = write_seg(folder / "seg.dcm", Mask(), gland_and_urethra());
   for (const char* word : {"duct", "DUCT", "2"}) {
     const std::vector<std::string> skip{word};
-    const auto input = read_input(path, {}, {}, skip);
-    ASSERT_TRUE(input.ok()) << why(input);
-    const auto& image = std::get<LabelImage>(*input);
+    const auto input = value_of(read_input(path, {}, {}, skip));
+    const auto& image = std::get<LabelImage>(input);
     EXPECT_EQ(std::count(image.labels.begin(), image.labels.end(), 1), 7 * 6 * 6) << word;
     EXPECT_EQ(std::count(image.labels.begin(), image.labels.end(), 2), 0) << word;
     EXPECT_EQ(image.names.at(2), "duct") << "what was skipped is known";
@@ -112,11 +108,10 @@ TEST(DicomSeg, slices_without_a_frame_are_empty) {
   const Folder folder;
   const Mask frame;
   const auto gap = [](int i, int j, int k) { return in_gland(i, j, k) && k != 3; };
-  const auto image = read_label_image(write_seg(folder / "seg.dcm", frame, {{"Prostate", "Prostate", gap}}));
-  ASSERT_TRUE(image.ok()) << why(image);
-  EXPECT_EQ(image->size, (std::array<Index, 3>{12, 10, 6}));
-  EXPECT_EQ(label_at(*image, frame.origin + frame.axes * Vec3(4, 4, 3)), 0);
-  EXPECT_EQ(label_at(*image, frame.origin + frame.axes * Vec3(4, 4, 4)), 1);
+  const auto image = value_of(read_label_image(write_seg(folder / "seg.dcm", frame, {{"Prostate", "Prostate", gap}})));
+  EXPECT_EQ(image.size, (std::array<Index, 3>{12, 10, 6}));
+  EXPECT_EQ(label_at(image, frame.origin + frame.axes * Vec3(4, 4, 3)), 0);
+  EXPECT_EQ(label_at(image, frame.origin + frame.axes * Vec3(4, 4, 4)), 1);
 }
 
 TEST(DicomSeg, a_stated_distance_of_slices_counts_where_most_slices_have_no_frame) {
@@ -152,9 +147,8 @@ TEST(DicomSeg, a_stated_distance_of_slices_counts_where_most_slices_have_no_fram
   EXPECT_NEAR(wrong->spacing[2], 8, 1e-6);
   EXPECT_TRUE(notes_say(*wrong, "SpacingBetweenSlices is 3 mm, but the frames do not lie at multiples of it"));
   EXPECT_TRUE(notes_say(*thick, "SpacingBetweenSlices is not stated, SliceThickness is 4 mm"));
-  const auto full = seg([](int) { return true; }, "4");
-  ASSERT_TRUE(full.ok()) << why(full);
-  EXPECT_FALSE(notes_say(*full, "slices"));
+  const auto full = value_of(seg([](int) { return true; }, "4"));
+  EXPECT_FALSE(notes_say(full, "slices"));
 }
 
 TEST(DicomSeg, a_fractional_segment_begins_at_one_half) {
@@ -162,12 +156,11 @@ TEST(DicomSeg, a_fractional_segment_begins_at_one_half) {
   for (const int most : {255, 100}) {
     const auto value = [&](int i, int, int) { return i == 2 ? most / 2 - 1 : i == 3 ? (most + 1) / 2 : most; };
     const Mask frame;
-    const auto image =
-        read_label_image(write_seg(folder / "seg.dcm", frame, {{"Prostate", "Prostate", in_gland}}, most, value));
-    ASSERT_TRUE(image.ok()) << why(image);
-    EXPECT_EQ(label_at(*image, frame.origin + frame.axes * Vec3(2, 4, 3)), 0);
-    EXPECT_EQ(label_at(*image, frame.origin + frame.axes * Vec3(3, 4, 3)), 1);
-    EXPECT_TRUE(notes_say(*image, "one half"));
+    const auto image = value_of(
+        read_label_image(write_seg(folder / "seg.dcm", frame, {{"Prostate", "Prostate", in_gland}}, most, value)));
+    EXPECT_EQ(label_at(image, frame.origin + frame.axes * Vec3(2, 4, 3)), 0);
+    EXPECT_EQ(label_at(image, frame.origin + frame.axes * Vec3(3, 4, 3)), 1);
+    EXPECT_TRUE(notes_say(image, "one half"));
   }
 }
 
@@ -233,9 +226,8 @@ TEST(DicomSeg, damage_is_named) {
 TEST(DicomSeg, a_folder_may_hold_it_but_not_beside_a_structure_set) {
   const Folder folder;
   write_seg(folder / "seg.dcm", Mask(), gland_and_urethra());
-  const auto input = read_input(folder.path());
-  ASSERT_TRUE(input.ok()) << why(input);
-  EXPECT_TRUE(std::holds_alternative<LabelImage>(*input));
+  const auto input = value_of(read_input(folder.path()));
+  EXPECT_TRUE(std::holds_alternative<LabelImage>(input));
   ASSERT_TRUE(write_rtstruct(two_organs(), folder / "rs.dcm").ok());
   expect_refused(read_input(folder.path()), {"rs.dcm, seg.dcm", "one is expected"});
   expect_refused(read_label_image(folder / "rs.dcm"), {"RTSTRUCT", "segmentation (SEG) is expected"});
@@ -254,15 +246,14 @@ TEST(LayeredNrrd, the_smaller_of_two_overlapping_segments_has_the_voxel) {
       std::swap(layers[0], layers[1]);
       names = replaced(replaced(keys, "urethra", "P"), "Prostate", "urethra");
     }
-    const auto image = read_mask("case.seg.nrrd", layered_nrrd(frame, layers, names));
-    ASSERT_TRUE(image.ok()) << why(image);
+    const auto image = value_of(read_mask("case.seg.nrrd", layered_nrrd(frame, layers, names)));
     const Vec3 in_both = frame.origin + frame.axes * Vec3(4, 4, 3),
                in_gland_only = frame.origin + frame.axes * Vec3(2, 2, 3);
-    EXPECT_EQ(image->names.at(label_at(*image, in_both)), "urethra");
-    EXPECT_EQ(image->names.at(label_at(*image, in_gland_only)), gland_first ? "P" : "Prostate");
-    EXPECT_TRUE(notes_say(*image, "share 24 voxels"));
-    EXPECT_TRUE(notes_say(*image, "3 segments in 2 layers"));
-    EXPECT_TRUE(notes_say(*image, "'nothing' is empty"));
+    EXPECT_EQ(image.names.at(label_at(image, in_both)), "urethra");
+    EXPECT_EQ(image.names.at(label_at(image, in_gland_only)), gland_first ? "P" : "Prostate");
+    EXPECT_TRUE(notes_say(image, "share 24 voxels"));
+    EXPECT_TRUE(notes_say(image, "3 segments in 2 layers"));
+    EXPECT_TRUE(notes_say(image, "'nothing' is empty"));
   }
 }
 
@@ -273,48 +264,45 @@ TEST(LayeredNrrd, a_skipped_segment_takes_no_voxel_from_what_lies_below) {
                                         "Segment1_Name:=Prostate\nSegment1_LabelValue:=1\nSegment1_Layer:=1\n");
   const Folder folder;
   const fs::path path = write_file(folder / "case.seg.nrrd", text);
-  const auto image = read_label_image(path, {.skip = {"Urethra"}});
-  ASSERT_TRUE(image.ok()) << why(image);
-  EXPECT_EQ(std::count(image->labels.begin(), image->labels.end(), 2), 7 * 6 * 6);
-  EXPECT_EQ(label_at(*image, frame.origin + frame.axes * Vec3(4, 4, 3)), 2);
-  EXPECT_EQ(image->names.at(1), "urethra");
+  const auto image = value_of(read_label_image(path, {.skip = {"Urethra"}}));
+  EXPECT_EQ(std::count(image.labels.begin(), image.labels.end(), 2), 7 * 6 * 6);
+  EXPECT_EQ(label_at(image, frame.origin + frame.axes * Vec3(4, 4, 3)), 2);
+  EXPECT_EQ(image.names.at(1), "urethra");
 }
 
 TEST(LayeredNrrd, no_segment_is_lost_without_a_word) {
   const Mask frame;
   auto gland = voxels(frame, in_gland);
   gland[0] = 5;  // not one of the segments below
-  const auto image =
+  const auto image = value_of(
       read_mask("case.seg.nrrd", layered_nrrd(frame, {voxels(frame, in_urethra), gland},
                                               "Segment0_Name:=urethra\nSegment0_LabelValue:=1\nSegment0_Layer:=0\n"
                                               "Segment2_Name:=\nSegment2_LabelValue:=1\nSegment2_Layer:=1\n"
                                               "Segment3_Name:=lost\nSegment3_LabelValue:=1\nSegment3_Layer:=2\n"
                                               "Segment4_Name:=odd\nSegment4_LabelValue:=one\nSegment4_Layer:=1\n"
                                               "Segment5_Name:=half\nSegment5_LabelValue:=1.5\nSegment5_Layer:=1\n"
-                                              "Segment6_Name:=where\nSegment6_LabelValue:=1\nSegment6_Layer:=x\n"));
-  ASSERT_TRUE(image.ok()) << why(image);
-  EXPECT_EQ(image->names, (std::map<int, std::string>{{1, "urethra"}})) << "no empty names";
-  EXPECT_EQ(label_at(*image, frame.origin + frame.axes * Vec3(2, 2, 3)), 2);
-  EXPECT_EQ(label_at(*image, frame.origin), 3);
-  EXPECT_TRUE(notes_say(*image, "Label 5 of layer 1 does not belong to a segment"));
+                                              "Segment6_Name:=where\nSegment6_LabelValue:=1\nSegment6_Layer:=x\n")));
+  EXPECT_EQ(image.names, (std::map<int, std::string>{{1, "urethra"}})) << "no empty names";
+  EXPECT_EQ(label_at(image, frame.origin + frame.axes * Vec3(2, 2, 3)), 2);
+  EXPECT_EQ(label_at(image, frame.origin), 3);
+  EXPECT_TRUE(notes_say(image, "Label 5 of layer 1 does not belong to a segment"));
   EXPECT_TRUE(
-      notes_say(*image, "Segment 'lost' has no voxels: its Segment3_Layer is 2, and the file's last layer is 1"));
-  EXPECT_TRUE(notes_say(*image, "Segment 'odd' has no voxels: its Segment4_LabelValue is 'one'"));
-  EXPECT_TRUE(notes_say(*image, "Segment 'half' has no voxels"));
-  EXPECT_TRUE(notes_say(*image, "Segment 'where' has no voxels: its Segment6_Layer is 'x'"));
+      notes_say(image, "Segment 'lost' has no voxels: its Segment3_Layer is 2, and the file's last layer is 1"));
+  EXPECT_TRUE(notes_say(image, "Segment 'odd' has no voxels: its Segment4_LabelValue is 'one'"));
+  EXPECT_TRUE(notes_say(image, "Segment 'half' has no voxels"));
+  EXPECT_TRUE(notes_say(image, "Segment 'where' has no voxels: its Segment6_Layer is 'x'"));
 }
 
 TEST(LayeredNrrd, labels_that_no_other_layer_has_are_kept) {
   const Mask frame;
   auto urethra = voxels(frame, in_urethra);
   for (std::uint8_t& v : urethra) v *= 7;
-  const auto image = read_mask("case.seg.nrrd", layered_nrrd(frame, {urethra, voxels(frame, in_gland)},
-                                                             "Segment0_Name:=urethra\nSegment0_LabelValue:=7\n"
-                                                             "Segment0_Layer:=0\nSegment1_Name:=gland\n"
-                                                             "Segment1_LabelValue:=1\nSegment1_Layer:=1\n"));
-  ASSERT_TRUE(image.ok()) << why(image);
-  EXPECT_EQ(label_at(*image, frame.origin + frame.axes * Vec3(4, 4, 3)), 7);
-  EXPECT_EQ(image->names.at(7), "urethra");
+  const auto image = value_of(read_mask("case.seg.nrrd", layered_nrrd(frame, {urethra, voxels(frame, in_gland)},
+                                                                      "Segment0_Name:=urethra\nSegment0_LabelValue:=7\n"
+                                                                      "Segment0_Layer:=0\nSegment1_Name:=gland\n"
+                                                                      "Segment1_LabelValue:=1\nSegment1_Layer:=1\n")));
+  EXPECT_EQ(label_at(image, frame.origin + frame.axes * Vec3(4, 4, 3)), 7);
+  EXPECT_EQ(image.names.at(7), "urethra");
 }
 
 TEST(LayeredNrrd, a_volume_for_each_segment_needs_no_labels_and_layers) {
@@ -325,17 +313,16 @@ TEST(LayeredNrrd, a_volume_for_each_segment_needs_no_labels_and_layers) {
       "Segment0_ID:=Segment_1\nSegment0_Name:=Prostate\nSegment1_ID:=Segment_2\n"
       "Segment1_Name:=Urethra\n";
   const std::string text = layered_nrrd(frame, {voxels(frame, in_gland), urethra}, keys);
-  const auto image = read_mask("case.seg.nrrd", text);
-  ASSERT_TRUE(image.ok()) << why(image);
-  EXPECT_EQ(image->names, (std::map<int, std::string>{{1, "Prostate"}, {2, "Urethra"}}));
-  EXPECT_EQ(std::count(image->labels.begin(), image->labels.end(), 1), 7 * 6 * 6 - 4 * 6);
-  EXPECT_EQ(std::count(image->labels.begin(), image->labels.end(), 2), 4 * 8);
-  EXPECT_TRUE(notes_say(*image, "'Urethra' and 'Prostate' share 24 voxels"));
-  EXPECT_FALSE(notes_say(*image, "without a name"));
-  const auto more = read_mask("case.seg.nrrd", replaced(text, "Segment1_ID", "Segment7_Name:=lost\nSegment1_ID"));
-  ASSERT_TRUE(more.ok()) << why(more);
-  EXPECT_TRUE(notes_say(*more, "Segment 'lost' has no voxels: it would be volume 8, and the file has 2."));
-  const auto one = read_mask("case.seg.nrrd", layered_nrrd(frame, {voxels(frame, in_gland)}, "Segment0_Name:=Gland\n"));
-  ASSERT_TRUE(one.ok()) << why(one);
-  EXPECT_EQ(one->names, (std::map<int, std::string>{{1, "Gland"}}));
+  const auto image = value_of(read_mask("case.seg.nrrd", text));
+  EXPECT_EQ(image.names, (std::map<int, std::string>{{1, "Prostate"}, {2, "Urethra"}}));
+  EXPECT_EQ(std::count(image.labels.begin(), image.labels.end(), 1), 7 * 6 * 6 - 4 * 6);
+  EXPECT_EQ(std::count(image.labels.begin(), image.labels.end(), 2), 4 * 8);
+  EXPECT_TRUE(notes_say(image, "'Urethra' and 'Prostate' share 24 voxels"));
+  EXPECT_FALSE(notes_say(image, "without a name"));
+  const auto more =
+      value_of(read_mask("case.seg.nrrd", replaced(text, "Segment1_ID", "Segment7_Name:=lost\nSegment1_ID")));
+  EXPECT_TRUE(notes_say(more, "Segment 'lost' has no voxels: it would be volume 8, and the file has 2."));
+  const auto one =
+      value_of(read_mask("case.seg.nrrd", layered_nrrd(frame, {voxels(frame, in_gland)}, "Segment0_Name:=Gland\n")));
+  EXPECT_EQ(one.names, (std::map<int, std::string>{{1, "Gland"}}));
 }

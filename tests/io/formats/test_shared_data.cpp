@@ -104,14 +104,13 @@ TEST_F(SharedData, eclipse_structure_set_survives_its_ten_empty_structures) {
 }
 
 TEST_F(SharedData, vitesse_structure_set_gives_organs_and_notes_its_needles) {
-  const auto set = read_rtstruct(data_folder() / "robustbrachy_hdr_phantom" / "SS001.dcm");
-  ASSERT_TRUE(set.ok()) << why(set);
-  ASSERT_EQ(set->rois.size(), 3U);
-  EXPECT_EQ(set->passed_over.size(), 14U);
+  const auto set = value_of(read_rtstruct(data_folder() / "robustbrachy_hdr_phantom" / "SS001.dcm"));
+  ASSERT_EQ(set.rois.size(), 3U);
+  EXPECT_EQ(set.passed_over.size(), 14U);
   const std::map<std::string, double> expected{{"Prostate", 49.7}, {"Urethra", 1.4}, {"Rectum", 6.3}};
-  for (const Roi& roi : set->rois) {
+  for (const Roi& roi : set.rois) {
     EXPECT_NEAR(volume_cc(roi), expected.at(roi.name), 0.06) << roi.name;
-    EXPECT_TRUE(structure_slices(roi, set->source).ok()) << why(structure_slices(roi, set->source));
+    EXPECT_TRUE(structure_slices(roi, set.source).ok()) << why(structure_slices(roi, set.source));
   }
   // The folder also has a plan and a dose.
   EXPECT_TRUE(read_input(data_folder() / "robustbrachy_hdr_phantom").ok());
@@ -122,15 +121,14 @@ TEST_F(SharedData, vitesse_structure_set_gives_organs_and_notes_its_needles) {
 TEST_F(SharedData, real_structure_sets_survive_being_written_and_read) {
   const Folder folder;
   for (const char* name : {"slicerrt_rando_rtstruct", "robustbrachy_hdr_phantom"}) {
-    const auto set = read_rtstruct(data_folder() / name);
-    ASSERT_TRUE(set.ok()) << why(set);
-    ASSERT_TRUE(write_rtstruct(*set, folder / "copy.dcm").ok());
-    ASSERT_TRUE(write_contour_json(*set, folder / "copy.json").ok());
+    const auto set = value_of(read_rtstruct(data_folder() / name));
+    ASSERT_TRUE(write_rtstruct(set, folder / "copy.dcm").ok());
+    ASSERT_TRUE(write_contour_json(set, folder / "copy.json").ok());
     const auto dicom = read_rtstruct(folder / "copy.dcm"), json = read_contour_json(folder / "copy.json");
     ASSERT_TRUE(dicom.ok() && json.ok()) << why(dicom) << why(json);
-    EXPECT_LT(largest_difference(*set, *dicom), 0.01);
-    EXPECT_EQ(largest_difference(*set, *json), 0.0);
-    EXPECT_EQ(dicom->frame_of_reference, set->frame_of_reference);
+    EXPECT_LT(largest_difference(set, *dicom), 0.01);
+    EXPECT_EQ(largest_difference(set, *json), 0.0);
+    EXPECT_EQ(dicom->frame_of_reference, set.frame_of_reference);
   }
 }
 
@@ -151,21 +149,19 @@ TEST_F(SharedData, third_party_meshes_load_with_their_scale_and_are_refused_with
                         Case{"sphere_in_box/sphere_in_box_5037.msh", 1000.0, 5037, 26507, 0.00064, 2}}) {
     SCOPED_TRACE(c.name);
     expect_refused(read_tet_mesh(data_folder() / c.name), {c.name, "not in mm", "--scale"});
-    const auto mesh = read_tet_mesh(data_folder() / c.name, {.scale = c.scale});
-    ASSERT_TRUE(mesh.ok()) << why(mesh);
-    EXPECT_EQ(mesh->node_count(), c.nodes);
-    EXPECT_EQ(mesh->tet_count(), c.tets);
-    EXPECT_EQ(mesh->regions.size(), c.regions);
+    const auto mesh = value_of(read_tet_mesh(data_folder() / c.name, {.scale = c.scale}));
+    EXPECT_EQ(mesh.node_count(), c.nodes);
+    EXPECT_EQ(mesh.tet_count(), c.tets);
+    EXPECT_EQ(mesh.regions.size(), c.regions);
     double volume = 0.0;
-    for (Index t = 0; t < mesh->tet_count(); ++t) volume += tet_volume(*mesh, t);
+    for (Index t = 0; t < mesh.tet_count(); ++t) volume += tet_volume(mesh, t);
     EXPECT_NEAR(volume / std::pow(c.scale, 3) / c.volume_units, 1.0, 1e-3);
   }
 }
 
 TEST_F(SharedData, a_triangulated_liver_is_a_surface) {
-  const auto input = read_input(data_folder() / "tetmesh_thirdparty" / "liver-smooth.obj", {.scale = 25.0});
-  ASSERT_TRUE(input.ok()) << why(input);
-  const auto& surfaces = std::get<std::vector<Surface>>(*input);
+  const auto input = value_of(read_input(data_folder() / "tetmesh_thirdparty" / "liver-smooth.obj", {.scale = 25.0}));
+  const auto& surfaces = std::get<std::vector<Surface>>(input);
   ASSERT_EQ(surfaces.size(), 1U);
   EXPECT_EQ(surfaces[0].points.size(), 2194U);
   EXPECT_EQ(surfaces[0].triangles.size(), 4384U);
@@ -176,10 +172,9 @@ TEST_F(SharedData, the_atlas_of_the_male_pelvis_loads_with_its_names_in_lps_mm) 
   for (const auto& [file, count] : {std::pair("VH_M_Prostate.glb", 18U), std::pair("VH_M_Pelvis.glb", 14U),
                                     std::pair("VH_M_Urinary_Bladder.glb", 6U), std::pair("VH_M_Urethra.glb", 2U),
                                     std::pair("SBU_M_Intestine_Large.glb", 10U)}) {
-    const auto surfaces = read_surfaces(data_folder() / "hubmap_vhm_pelvis" / file);
-    ASSERT_TRUE(surfaces.ok()) << why(surfaces);
-    EXPECT_EQ(surfaces->size(), count) << file;
-    for (const Surface& s : *surfaces) organs[s.name] = s;
+    const auto surfaces = value_of(read_surfaces(data_folder() / "hubmap_vhm_pelvis" / file));
+    EXPECT_EQ(surfaces.size(), count) << file;
+    for (const Surface& s : surfaces) organs[s.name] = s;
   }
   const auto volume = [&](const std::string& name) {
     const Surface& s = organs.at(name);

@@ -156,18 +156,17 @@ TEST(Surfaces, normals_of_a_closed_surface_are_turned_outward) {
 }
 
 TEST(Surfaces, glb_nodes_become_named_surfaces_in_lps_mm) {
-  const Result<std::vector<Surface>> surfaces = read("scene.glb", glb(0.03));
-  ASSERT_TRUE(surfaces.ok()) << why(surfaces);
-  ASSERT_EQ(surfaces->size(), 2U);
-  EXPECT_EQ((*surfaces)[0].name, "left");
-  EXPECT_EQ((*surfaces)[1].name, "right");
-  for (const Surface& s : *surfaces) {
+  const auto surfaces = value_of(read("scene.glb", glb(0.03)));
+  ASSERT_EQ(surfaces.size(), 2U);
+  EXPECT_EQ(surfaces[0].name, "left");
+  EXPECT_EQ(surfaces[1].name, "right");
+  for (const Surface& s : surfaces) {
     EXPECT_EQ(s.points.size(), 4U) << "welded by position";
     EXPECT_NEAR(volume(s), 27000.0 / 6.0, 1e-1);
   }
   Eigen::AlignedBox3d left, right;
-  for (const Vec3& p : (*surfaces)[0].points) left.extend(p);
-  for (const Vec3& p : (*surfaces)[1].points) right.extend(p);
+  for (const Vec3& p : surfaces[0].points) left.extend(p);
+  for (const Vec3& p : surfaces[1].points) right.extend(p);
   // (x, y, z) in m, y up, becomes (1000 x, -1000 z, 1000 y) in mm.
   EXPECT_LT((left.min() - Vec3(0, -30, 0)).norm() + (left.max() - Vec3(30, 0, 30)).norm(), 1e-3);
   EXPECT_LT((right.min() - Vec3(1000, -30, 0)).norm(), 1e-3);
@@ -181,10 +180,9 @@ TEST(Surfaces, a_scale_is_applied_and_wrong_units_are_refused) {
 }
 
 TEST(Surfaces, ras_surfaces_of_3d_slicer_are_turned_into_lps) {
-  const Result<std::vector<Surface>> s = read("thing.ply", ply(30, "SPACE=RAS"));
-  ASSERT_TRUE(s.ok()) << why(s);
+  const auto s = value_of(read("thing.ply", ply(30, "SPACE=RAS")));
   Eigen::AlignedBox3d box;
-  for (const Vec3& p : s->front().points) box.extend(p);
+  for (const Vec3& p : s.front().points) box.extend(p);
   EXPECT_LT((box.min() - Vec3(-30, -30, 0)).norm(), 1e-4);
 }
 

@@ -17,18 +17,12 @@ using test::Folder;
 using test::saved_box;
 
 std::shared_ptr<const Model> box_model() {
-  auto model = Model::compile(saved_box(), test::box_patient(), "box");
-  if (!model) throw std::runtime_error(model.error().message());
-  return *model;
+  return test::value_of(Model::compile(saved_box(), test::box_patient(), "box"));
 }
 
 void write(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
 
-std::string key(const Scenario& scenario) {
-  const auto made = model_key(scenario);
-  if (!made) throw std::runtime_error(made.error().message());
-  return *made;
-}
+std::string key(const Scenario& scenario) { return test::value_of(model_key(scenario)); }
 
 void keep(const ModelCache& cache, const std::string& name) {
   const auto kept = cache.keep(*box_model(), name, std::vector<std::string>{"a note"});

@@ -39,9 +39,7 @@ std::vector<double> run_of(const std::shared_ptr<const Model>& model, bool grow 
 }
 
 std::shared_ptr<const Model> loaded(const std::filesystem::path& path, std::span<const std::string> settings = {}) {
-  auto model = load_model(path, {}, settings);
-  if (!model) throw std::runtime_error(model.error().message());
-  return *model;
+  return test::value_of(load_model(path, {}, settings));
 }
 
 /// Some nodes without stored compliance.

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <initializer_list>
 #include <string>
 #include <string_view>
 
@@ -11,6 +14,12 @@ inline std::size_t count(std::string_view text, std::string_view word) {
   std::size_t found = 0;
   for (std::size_t at = text.find(word); at != std::string_view::npos; at = text.find(word, at + word.size())) ++found;
   return found;
+}
+
+/// Expects that each of these parts is in a text, and only once.
+inline void expect_once(std::string_view text, std::initializer_list<std::string_view> parts) {
+  for (const std::string_view part : parts)
+    EXPECT_EQ(count(text, part), 1U) << part << " in:\n" << text.substr(0, 2000);
 }
 
 /// The text between the first `begin` and the next `end` behind it.

@@ -7,7 +7,6 @@
 #include "stylet/sim/recording.hpp"
 
 #include <array>
-#include <filesystem>
 #include <vector>
 
 namespace stylet::testing {
@@ -39,24 +38,5 @@ HoleMap synthetic_map();
 HoleMap synthetic_map_beside_needles();
 
 RunRecording recording_of(const SyntheticRun& run);
-
-/// An empty folder below the test's temporary folder, removed at the end with its content.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
-/// The whole file as text; empty if it cannot be read.
-std::string file_text(const std::filesystem::path& path);
-
-/// Names of all files and folders directly in `folder`, sorted.
-std::vector<std::string> names_in(const std::filesystem::path& folder);
 
 }  // namespace stylet::testing

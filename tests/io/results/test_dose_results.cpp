@@ -5,6 +5,7 @@
 #include "results/dose/structure_look.hpp"
 #include "results/dose/structure_mask.hpp"
 #include "stylet/io/dose_results.hpp"
+#include "support/folder.hpp"
 #include "synthetic_dose.hpp"
 
 #include <gtest/gtest.h>
@@ -12,11 +13,11 @@
 
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <set>
 #include <sstream>
 
 using namespace stylet;
+using namespace stylet::test;
 using namespace stylet::testing;
 namespace fs = std::filesystem;
 
@@ -28,27 +29,10 @@ const DoseEvaluation& implant() {
   return evaluation;
 }
 
-fs::path fresh_folder(const std::string& name) {
-  const fs::path folder = fs::path(::testing::TempDir()) / ("stylet_dose_" + name);
-  fs::remove_all(folder);
-  return folder;
-}
-
-std::string text_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
 std::vector<std::string> keys_of(const nlohmann::ordered_json& object) {
   std::vector<std::string> keys;
   for (const auto& [key, value] : object.items()) keys.push_back(key);
   return keys;
-}
-
-std::set<std::string> names_in(const fs::path& folder) {
-  std::set<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder)) names.insert(entry.path().filename().string());
-  return names;
 }
 
 /// Volume [mm³] within a closed surface whose triangles go round counter-clockwise, seen from outside.
@@ -162,38 +146,34 @@ TEST(DvhCsv, ends_at_the_first_dose_that_nothing_receives) {
 }
 
 TEST(DoseFolder, holds_all_files_and_nothing_else) {
-  const fs::path folder = fresh_folder("whole");
-  const auto done = write_dose_results(implant(), folder);
+  const Folder folder;
+  const auto done = write_dose_results(implant(), folder.path());
   ASSERT_TRUE(done) << done.error().message();
-  EXPECT_EQ(names_in(folder),
-            (std::set<std::string>{"dose.dcm", "dose.json", "dose.nrrd", "dvh.csv", "plan.dcm", "report.html"}));
-  EXPECT_EQ(text_of(folder / "dose.json"), dose_json(implant()));
-  EXPECT_EQ(text_of(folder / "dvh.csv"), dvh_csv(implant()));
-  EXPECT_TRUE(text_of(folder / "dose.nrrd").starts_with("NRRD"));
-  fs::remove_all(folder);
+  EXPECT_EQ(names_in(folder.path()),
+            (std::vector<std::string>{"dose.dcm", "dose.json", "dose.nrrd", "dvh.csv", "plan.dcm", "report.html"}));
+  EXPECT_EQ(content_of(folder / "dose.json"), dose_json(implant()));
+  EXPECT_EQ(content_of(folder / "dvh.csv"), dvh_csv(implant()));
+  EXPECT_TRUE(content_of(folder / "dose.nrrd").starts_with("NRRD"));
 }
 
 TEST(DoseFolder, leaves_nothing_where_it_cannot_be_written) {
-  const fs::path parent = fresh_folder("parent");
-  fs::create_directories(parent);
-  std::ofstream(parent / "file") << "a file";
-  const auto done = write_dose_results(implant(), parent / "file" / "results");
+  const Folder folder;
+  std::ofstream(folder / "file") << "a file";
+  const auto done = write_dose_results(implant(), folder / "file" / "results");
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().kind, ErrorKind::input);
-  EXPECT_EQ(names_in(parent), std::set<std::string>{"file"});
-  EXPECT_EQ(text_of(parent / "file"), "a file");
-  fs::remove_all(parent);
+  EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"file"});
+  EXPECT_EQ(content_of(folder / "file"), "a file");
 }
 
 TEST(DoseFolder, has_no_dose_json_after_a_failure) {
-  const fs::path folder = fresh_folder("failed");
+  const Folder folder;
   fs::create_directories(folder / "dvh.csv" / "inside");  // a file cannot take the place of a folder
   std::ofstream(folder / "dose.json") << "of an earlier run";
-  const auto done = write_dose_results(implant(), folder);
+  const auto done = write_dose_results(implant(), folder.path());
   ASSERT_FALSE(done);
   EXPECT_FALSE(fs::exists(folder / "dose.json"));
-  for (const std::string& name : names_in(folder)) EXPECT_FALSE(name.starts_with(".")) << name;
-  fs::remove_all(folder);
+  for (const std::string& name : names_in(folder.path())) EXPECT_FALSE(name.starts_with(".")) << name;
 }
 
 TEST(DosePage, escapes_names_and_sentences) {
@@ -207,21 +187,20 @@ TEST(DosePage, escapes_names_and_sentences) {
   e.plan.notes = {name};
   e.goals[0].goal.citation = name;
   e.comparison->file = name;
-  const fs::path folder = fresh_folder("escaped");
-  const auto done = write_dose_results(e, folder);
+  const Folder folder;
+  const auto done = write_dose_results(e, folder.path());
   ASSERT_TRUE(done) << done.error().message();
-  const std::string page = text_of(folder / "report.html");
+  const std::string page = content_of(folder / "report.html");
   EXPECT_EQ(count(page, "<b>PTV"), 0);
   EXPECT_GE(count(markup(page), "&lt;b&gt;PTV &amp; &quot;x&quot;"), 8);
   const auto data = nlohmann::json::parse(between(page, "id=\"dose-data\">", "</script>"));
   EXPECT_EQ(data["structures"][0]["name"], name);
-  fs::remove_all(folder);
 }
 
 TEST(DosePage, says_of_each_goal_whether_it_is_met_in_words) {
-  const fs::path folder = fresh_folder("goals");
-  ASSERT_TRUE(write_dose_results(implant(), folder));
-  const std::string table = between(text_of(folder / "report.html"), "<table class=\"goals\">", "</table>");
+  const Folder folder;
+  ASSERT_TRUE(write_dose_results(implant(), folder.path()));
+  const std::string table = between(content_of(folder / "report.html"), "<table class=\"goals\">", "</table>");
   std::size_t met = 0, missed = 0;
   for (const JudgedGoal& goal : implant().goals) {
     if (goal.value) ++(goal.met ? met : missed);
@@ -229,7 +208,6 @@ TEST(DosePage, says_of_each_goal_whether_it_is_met_in_words) {
   EXPECT_EQ(count(table, "</i>met<"), met);
   EXPECT_EQ(count(table, "</i>missed<"), missed);
   EXPECT_EQ(count(table, "</i>not judged<"), 1);
-  fs::remove_all(folder);
 }
 
 TEST(DosePage, stays_below_8_MB_with_a_large_grid_and_many_structures) {
@@ -238,11 +216,10 @@ TEST(DosePage, stays_below_8_MB_with_a_large_grid_and_many_structures) {
   e.grid.spacing_mm = Vec3::Constant(0.44);
   e.grid.dose_Gy.assign(200UL * 200UL * 200UL, 100.0F);
   while (e.structures.size() < 24) e.structures.push_back(e.structures[e.structures.size() % 3]);
-  const fs::path folder = fresh_folder("large");
-  const auto done = write_dose_results(e, folder);
+  const Folder folder;
+  const auto done = write_dose_results(e, folder.path());
   ASSERT_TRUE(done) << done.error().message();
   EXPECT_LT(fs::file_size(folder / "report.html"), 8U << 20U);
-  fs::remove_all(folder);
 }
 
 TEST(DosePage, shows_a_plan_of_one_seed_without_anything_else) {
@@ -253,18 +230,17 @@ TEST(DosePage, shows_a_plan_of_one_seed_without_anything_else) {
   e.points.clear();
   e.comparison.reset();
   e.prescription_Gy = 0.0;
-  const fs::path folder = fresh_folder("one");
-  const auto done = write_dose_results(e, folder);
+  const Folder folder;
+  const auto done = write_dose_results(e, folder.path());
   ASSERT_TRUE(done) << done.error().message();
-  const std::string page = text_of(folder / "report.html");
+  const std::string page = content_of(folder / "report.html");
   EXPECT_EQ(count(page, "No structures were given."),
             1 + count(between(page, "<script>", "</script>"), "No structures were given."));
   EXPECT_EQ(count(markup(page), "{{"), 0);
-  EXPECT_EQ(text_of(folder / "dvh.csv"), "dose_Gy\n0.000\n");
+  EXPECT_EQ(content_of(folder / "dvh.csv"), "dose_Gy\n0.000\n");
   const auto data = nlohmann::json::parse(between(page, "id=\"dose-data\">", "</script>"));
   EXPECT_EQ(data["centre_mm"][2], e.plan.sources[0].at_mm.z()) << "without a target the view is about the sources";
   EXPECT_GT(data["dose"]["values"].get<std::string>().size(), 100U);
-  fs::remove_all(folder);
 }
 
 TEST(StructureMask, is_half_full_at_a_surface_with_the_volume_of_the_samples) {

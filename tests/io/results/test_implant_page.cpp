@@ -6,19 +6,19 @@
 #include "results/implant/implant_tables.hpp"
 #include "results/implant/implant_words.hpp"
 #include "results/implant/oedema_section.hpp"
+#include "support/folder.hpp"
 #include "synthetic_implant.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <sstream>
 #include <vector>
 
 using namespace stylet;
+using namespace stylet::test;
 using namespace stylet::testing;
 
 namespace {
@@ -58,10 +58,9 @@ TEST(ImplantPage, has_the_figures_of_errors_and_doses_and_no_slot_left) {
   const SeedErrors errors = seed_errors(outcome().history.seeds);
   EXPECT_EQ(errors.seeds, 43U);
   const std::string tiles = between(text, "<ul class=\"tiles\">", "</ul>");
-  EXPECT_EQ(count(tiles, fmt::format("<b>{:.1f}&nbsp;mm</b>", errors.mean_mm)), 1U);
-  EXPECT_EQ(count(tiles, fmt::format("<b>{:.1f}&nbsp;mm</b>", errors.p95_mm)), 1U);
-  EXPECT_EQ(count(tiles, "44<small>1 lost</small>"), 1U);
-  EXPECT_EQ(count(tiles, fmt::format("<b>{}</b>", outcome().history.needles.size())), 1U);
+  expect_once(
+      tiles, {fmt::format("<b>{:.1f}&nbsp;mm</b>", errors.mean_mm), fmt::format("<b>{:.1f}&nbsp;mm</b>", errors.p95_mm),
+              "44<small>1 lost</small>", fmt::format("<b>{}</b>", outcome().history.needles.size())});
   const double d90 = outcome().planned.structures[0].dvh.dose_of_percent(90.0);
   EXPECT_EQ(count(tiles, fmt::format("{:.0f}&nbsp;Gy", d90)), 1U);
   const std::string table = between(text, "<table class=\"figures errors\">", "</table>");
@@ -82,8 +81,7 @@ TEST(ImplantPage, judges_the_goals_of_both_doses) {
   implant.planned.goals[0].met = true;
   implant.delivered.goals[0].met = false;
   const std::string table = between(page_of(implant), "<table class=\"goals\">", "</table>");
-  EXPECT_EQ(count(table, "Planned"), 1U);
-  EXPECT_EQ(count(table, "Delivered"), 1U);
+  expect_once(table, {"Planned", "Delivered"});
   EXPECT_EQ(count(table, "class=\"verdict"), 2 * implant.delivered.goals.size());
   const std::string row = between(table, "<td>D90</td>", "</tr>");
   EXPECT_LT(row.find("</i>met<"), row.find("</i>missed<"));
@@ -211,15 +209,13 @@ TEST(ImplantPage, has_a_section_about_seeds_found_on_images_only_where_there_are
   const std::string section = between(text, "id=\"found\"", "</section>");
   const FoundComparison& comparison = outcome_with_found().found->comparison;
   ASSERT_EQ(comparison.seeds.size(), 41U);
-  EXPECT_EQ(count(section, "41<small>42 found, 43 simulated</small>"), 1U);
-  EXPECT_EQ(count(section, "more than chance"), 1U);
-  EXPECT_EQ(count(section, "(no. 4, 11 of the plan)"), 1U);
-  EXPECT_EQ(count(section, "<td>matches no simulated seed</td>"), 1U);
+  expect_once(section, {"41<small>42 found, 43 simulated</small>", "more than chance", "(no. 4, 11 of the plan)",
+                        "<td>matches no simulated seed</td>"});
   EXPECT_EQ(count(section, "<td>not found</td>"), 2U);
   EXPECT_EQ(count(section, "<td>lost in the simulation</td>"), 1U);
   const std::string table = between(section, "<table class=\"figures errors found-errors\">", "</table>");
   EXPECT_EQ(count(table, fmt::format("<td class=\"number\">{:.2f}</td>", comparison.as_found.error.mean_mm)), 1U);
-  EXPECT_EQ(count(text, "href=\"found/report.html\""), 1U);
+  expect_once(text, {"href=\"found/report.html\""});
   EXPECT_EQ(count(text, "found.csv</code> beside") + count(text, "<code>found.csv</code>."), 1U);
   const auto data = data_of(page);
   EXPECT_EQ(data["found"]["seeds"].size(), 41U);
@@ -249,10 +245,9 @@ TEST(ImplantPage, shows_compensation_and_span_where_they_were_asked_for) {
   EXPECT_EQ(count(text, "{{") + count(text, "nan"), 0U);
   const std::string before = between(text, "id=\"compensation\"", "</section>");
   const double mean = seed_errors(implant.history.seeds).mean_mm;
-  EXPECT_EQ(count(before, fmt::format("{:.1f}&nbsp;mm (before compensation) and {:.1f}&nbsp;mm (after compensation)",
-                                      mean, mean)),
-            1U);
-  EXPECT_EQ(count(before, "<table class=\"goals\">"), 1U);
+  expect_once(before,
+              {fmt::format("{:.1f}&nbsp;mm (before compensation) and {:.1f}&nbsp;mm (after compensation)", mean, mean),
+               "<table class=\"goals\">"});
   const std::string span = between(text, "id=\"span\"", "</section>");
   EXPECT_EQ(count(span, "Firm tissue</th>") + count(span, "Soft tissue</th>"), 2U) << "columns of the goals";
   const auto choices = data_of(page)["choices"];
@@ -284,19 +279,15 @@ TEST(FoundSentences, say_whether_the_shift_is_chance_and_what_is_explained) {
 }
 
 TEST(FoundCsv, of_an_earlier_run_is_removed_and_a_file_of_the_user_stays) {
-  namespace fs = std::filesystem;
-  const fs::path folder = fs::path(::testing::TempDir()) / "stylet_earlier_found";
-  fs::remove_all(folder);
-  fs::create_directories(folder / "found");
-  EXPECT_TRUE(results::remove_earlier_found(folder).ok()) << "nothing is there";
-  std::ofstream(folder / "found.csv") << found_csv(outcome_with_found().history, *outcome_with_found().found);
-  std::ofstream(folder / "found" / "dose.json") << "{}";
-  EXPECT_TRUE(results::remove_earlier_found(folder).ok());
-  EXPECT_FALSE(fs::exists(folder / "found.csv") || fs::exists(folder / "found" / "dose.json"));
-  std::ofstream(folder / "found.csv") << "x_mm,y_mm,z_mm\n1,2,3\n";
-  EXPECT_TRUE(results::remove_earlier_found(folder).ok());
-  EXPECT_TRUE(fs::exists(folder / "found.csv"));
-  fs::remove_all(folder);
+  const Folder folder;
+  EXPECT_TRUE(results::remove_earlier_found(folder.path()).ok()) << "nothing is there";
+  write_file(folder / "found.csv", found_csv(outcome_with_found().history, *outcome_with_found().found));
+  write_file(folder / "found/dose.json", "{}");
+  EXPECT_TRUE(results::remove_earlier_found(folder.path()).ok());
+  EXPECT_FALSE(std::filesystem::exists(folder / "found.csv") || std::filesystem::exists(folder / "found/dose.json"));
+  write_file(folder / "found.csv", "x_mm,y_mm,z_mm\n1,2,3\n");
+  EXPECT_TRUE(results::remove_earlier_found(folder.path()).ok());
+  EXPECT_TRUE(std::filesystem::exists(folder / "found.csv"));
 }
 
 TEST(FoundCsv, has_a_row_for_each_seed_of_the_plan_and_each_found_seed_without_match) {
@@ -329,8 +320,7 @@ TEST(TemporaryPage, speaks_of_dwell_positions_and_catheters_and_has_three_places
   const ImplantOutcome implant = temporary_outcome();
   const std::string text = markup(page_of(implant));
   EXPECT_EQ(count(text, "{{"), 0U);
-  EXPECT_EQ(count(text, "Simulation of a temporary implant"), 1U);
-  EXPECT_EQ(count(text, "Errors of the dwell positions"), 1U);
+  expect_once(text, {"Simulation of a temporary implant", "Errors of the dwell positions"});
   EXPECT_GE(count(text, "Tissue at planning [mm]"), 1U);
   EXPECT_GE(count(text, "At planning"), 1U);
   EXPECT_EQ(count(text, "against the tissue, on the whole"), 1U);
@@ -338,8 +328,7 @@ TEST(TemporaryPage, speaks_of_dwell_positions_and_catheters_and_has_three_places
   EXPECT_EQ(count(text, "Shafts are those of needles"), 0U);
   EXPECT_EQ(count(text, "needle first"), 0U);
   const std::string table = seeds_csv(implant);
-  EXPECT_EQ(count(table, "planning_room_x_mm"), 1U);
-  EXPECT_EQ(count(table, "wait_z_mm"), 1U);
+  expect_once(table, {"planning_room_x_mm", "wait_z_mm"});
   EXPECT_EQ(count(table, "strand"), 0U);
   const auto json = nlohmann::json::parse(implant_json(implant));
   EXPECT_EQ(json["implant"]["dwell_positions"].size(), implant.history.seeds.size());

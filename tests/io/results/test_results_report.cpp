@@ -7,6 +7,7 @@
 #include "report/text.hpp"
 #include "report_page.hpp"
 #include "stylet/io/region_views.hpp"
+#include "support/says.hpp"
 #include "synthetic_run.hpp"
 
 #include <gtest/gtest.h>
@@ -15,6 +16,7 @@
 #include <cstring>
 
 using namespace stylet;
+using namespace stylet::test;
 using namespace stylet::results;
 using namespace stylet::testing;
 
@@ -70,8 +72,7 @@ TEST(Report, has_a_map_of_the_template_where_there_is_one) {
   const HoleMap map = synthetic_map();
   const auto page = report_html(run, regions, find_moments(run.frames), {{}, "no driver"}, &map);
   ASSERT_TRUE(page);
-  EXPECT_NE(page->find("A map before the needle"), std::string::npos);
-  EXPECT_NE(page->find("There is no rectum in this model."), std::string::npos);
+  expect_says(*page, {"A map before the needle", "There is no rectum in this model."});
   EXPECT_EQ(page->find("There is no urethra in this model."), std::string::npos);
   EXPECT_NE(page->find("e3.5 (planned)"), std::string::npos);
   EXPECT_NE(page->find("the target&#39;s far end lies 210"), std::string::npos) << "why a hole has no figures";
@@ -98,10 +99,8 @@ TEST(Report, with_needles_in_place_says_so_and_from_where_the_figures_of_the_map
   EXPECT_EQ(page_with(synthetic_map()).find("Needles are in place"), std::string::npos);
   EXPECT_EQ(page_with(synthetic_map()).find("Tip error from the plan"), std::string::npos);
   const std::string page = page_with(synthetic_map_beside_needles());
-  EXPECT_NE(page.find("Needles are in place in the holes B4, F4"), std::string::npos);
-  EXPECT_NE(page.find("mm from its place at rest"), std::string::npos);
-  EXPECT_NE(page.find("Needle in place, hole B4: it scraped."), std::string::npos);
-  EXPECT_NE(page.find("Tip error from the plan"), std::string::npos);
+  expect_says(page, {"Needles are in place in the holes B4, F4", "mm from its place at rest",
+                     "Needle in place, hole B4: it scraped.", "Tip error from the plan"});
 
   auto beside = synthetic_run();
   EXPECT_EQ(page_of(recording_of(beside)).find("Needles were in place"), std::string::npos);
@@ -109,20 +108,16 @@ TEST(Report, with_needles_in_place_says_so_and_from_where_the_figures_of_the_map
   ASSERT_NE(needles_in_place(map), nullptr);
   beside.summary.in_place = *needles_in_place(map);
   const std::string told = page_of(recording_of(beside));
-  EXPECT_NE(told.find("Needles were in place in the holes B4, F4, and stayed."), std::string::npos);
-  EXPECT_NE(told.find("by 2.00 mm before"), std::string::npos);
+  expect_says(told, {"Needles were in place in the holes B4, F4, and stayed.", "by 2.00 mm before"});
 }
 
 TEST(Report, tells_what_happened_from_the_data) {
   auto run = synthetic_run();
   const std::string page = page_of(recording_of(run));
-  EXPECT_NE(page.find("76.0 mm beyond the entry point"), std::string::npos);
-  EXPECT_NE(page.find("pierced the skin at 7.0 mm under an axial force of 1.10 N"), std::string::npos);
-  EXPECT_NE(page.find("For the first 4.0 mm the tissue stuck to it"), std::string::npos);
-  EXPECT_NE(page.find("2.7 mm towards the head, 0.5 mm forwards and 0.2 mm to the patient&#39;s left"),
-            std::string::npos);
-  EXPECT_NE(page.find("back in its initial shape"), std::string::npos);
-  EXPECT_NE(page.find("Not a medical device."), std::string::npos);
+  expect_says(page, {"76.0 mm beyond the entry point", "pierced the skin at 7.0 mm under an axial force of 1.10 N",
+                     "For the first 4.0 mm the tissue stuck to it",
+                     "2.7 mm towards the head, 0.5 mm forwards and 0.2 mm to the patient&#39;s left",
+                     "back in its initial shape", "Not a medical device."});
   for (const auto& parameter : run.info.parameters) {
     EXPECT_NE(page.find(html_escaped(parameter.source)), std::string::npos);
   }
@@ -165,13 +160,11 @@ TEST(Report, tells_how_far_the_tip_lies_from_its_planned_place) {
 TEST(Report, tells_how_the_gland_moved_in_anatomical_words) {
   auto run = synthetic_run();
   const std::string page = page_of(recording_of(run));
-  EXPECT_NE(page.find("broke through its surface, the prostate as a whole had moved by 1.84 mm superior, 0.31 mm "
-                      "anterior and 0.12 mm left"),
-            std::string::npos);
-  EXPECT_NE(page.find("it was back"), std::string::npos);
-  EXPECT_NE(page.find("<td>sagittal</td><td class=\"number\">1.250</td><td>base to anterior</td>"), std::string::npos);
-  EXPECT_NE(page.find("<td>coronal</td><td class=\"number\">-0.500</td><td>base to the right</td>"), std::string::npos);
-  EXPECT_NE(page.find("id=\"gland-depth\""), std::string::npos);
+  expect_says(page,
+              {"broke through its surface, the prostate as a whole had moved by 1.84 mm superior, 0.31 mm anterior and "
+               "0.12 mm left",
+               "it was back", "<td>sagittal</td><td class=\"number\">1.250</td><td>base to anterior</td>",
+               "<td>coronal</td><td class=\"number\">-0.500</td><td>base to the right</td>", "id=\"gland-depth\""});
   const auto data = data_of(recording_of(run));
   const auto si = numbers<float>(data["gland"]["SI_mm"]);
   ASSERT_EQ(si.size(), run.steps.size());
@@ -191,13 +184,9 @@ TEST(Report, loads_nothing_from_anywhere) {
                       "'unsafe-inline'; img-src data: blob:\""),
             std::string::npos);
   const std::string visible = markup(page);
-  EXPECT_EQ(visible.find("http:"), std::string::npos);
-  EXPECT_EQ(visible.find("https:"), std::string::npos);
-  EXPECT_EQ(visible.find("<link"), std::string::npos);
-  EXPECT_EQ(visible.find("<iframe"), std::string::npos);
+  expect_silent(visible, {"http:", "https:", "<link", "<iframe"});
   const std::string style = between(page, "<style>", "</style>");
-  EXPECT_EQ(style.find("@import"), std::string::npos);
-  EXPECT_EQ(style.find("url("), std::string::npos);
+  expect_silent(style, {"@import", "url("});
   EXPECT_EQ(page.find("<script src"), std::string::npos);
   EXPECT_EQ(page.find("{{"), page.find("{{", page.find("report-data")));  // no placeholder is left before the scripts
 }
@@ -304,14 +293,12 @@ TEST(Report, tissue_parameters_are_one_line_per_region_with_unit_and_source) {
                                        {"needle.length_mm", "200", "mm", "scenario"}};
   const std::string html = parameter_tables(rows);
   EXPECT_EQ(count(html, "<tr>"), 2U + 5U);  // two header rows, three tissues, two rows for all tissue
-  EXPECT_NE(html.find("<code>young_<wbr>kPa</code><br>[kPa]"), std::string::npos);
-  EXPECT_NE(html.find("<td>Prostate</td><td class=\"number\">40</td><td class=\"number\">0.25</td>"),
-            std::string::npos);
-  EXPECT_NE(html.find("<code>young_kPa</code>: Shoji 2018"), std::string::npos);
-  EXPECT_NE(html.find("<td>Pubic arch</td><td colspan=\"2\">held</td><td class=\"source\">bone</td>"),
-            std::string::npos);
-  EXPECT_NE(html.find("<td>Body</td><td class=\"number\">60</td><td class=\"number\">–</td>"), std::string::npos);
-  EXPECT_NE(html.find("<code>needle.length_mm</code>"), std::string::npos);
+  expect_says(
+      html, {"<code>young_<wbr>kPa</code><br>[kPa]",
+             "<td>Prostate</td><td class=\"number\">40</td><td class=\"number\">0.25</td>",
+             "<code>young_kPa</code>: Shoji 2018",
+             "<td>Pubic arch</td><td colspan=\"2\">held</td><td class=\"source\">bone</td>",
+             "<td>Body</td><td class=\"number\">60</td><td class=\"number\">–</td>", "<code>needle.length_mm</code>"});
 }
 
 TEST(ReportText, numbers_stay_with_their_units) {

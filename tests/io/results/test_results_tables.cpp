@@ -4,6 +4,7 @@
 #include "record/run_columns.hpp"
 #include "results/summary_json.hpp"
 #include "stylet/io/hole_map_io.hpp"
+#include "support/value_of.hpp"
 #include "synthetic_run.hpp"
 
 #include <gtest/gtest.h>
@@ -15,6 +16,7 @@
 
 using namespace stylet;
 using namespace stylet::results;
+using namespace stylet::testing;
 
 namespace {
 
@@ -62,7 +64,7 @@ TEST(ForcesCsv, one_line_per_step_with_fixed_digits) {
 }
 
 TEST(ForcesCsv, the_same_run_gives_the_same_bytes_apart_from_step_us) {
-  auto one = stylet::testing::synthetic_run(), other = stylet::testing::synthetic_run();
+  auto one = synthetic_run(), other = synthetic_run();
   EXPECT_EQ(record::csv_of(one.steps), record::csv_of(other.steps));
   for (auto& step : other.steps) step.step_us += 17;
   const auto a = lines_of(record::csv_of(one.steps)), b = lines_of(record::csv_of(other.steps));
@@ -84,7 +86,7 @@ TEST(GlandCsv, has_the_documented_columns_in_patient_directions_and_planes) {
 }
 
 TEST(SummaryJson, tells_how_the_gland_moved_in_patient_directions) {
-  const auto run = stylet::testing::synthetic_run();
+  const auto run = synthetic_run();
   const auto json = nlohmann::ordered_json::parse(summary_json(run.summary));
   using Keys = std::vector<std::string>;
   const auto& gland = json["gland"];
@@ -113,13 +115,12 @@ TEST(SummaryJson, of_the_gland_survives_the_round_trip_with_what_is_missing) {
   EXPECT_TRUE(json["gland"]["shift_at_break_mm"].is_null());
   EXPECT_TRUE(json["gland"]["shift_residual_mm"].is_null());
   EXPECT_TRUE(json["gland"]["mid_mm"].is_null());
-  const auto back = parse_summary_json(summary_json(summary), "test");
-  ASSERT_TRUE(back.ok()) << back.error().message();
-  ASSERT_TRUE(back->gland);
-  EXPECT_EQ(back->gland->shift_max_mm, Vec3(1, 2, 3));
-  EXPECT_EQ(back->gland->rotation_deg, Vec3(4, 5, 6));
-  EXPECT_FALSE(back->gland->shift_residual_mm);
-  EXPECT_EQ(summary_json(*back), summary_json(summary));
+  const auto back = test::value_of(parse_summary_json(summary_json(summary), "test"));
+  ASSERT_TRUE(back.gland);
+  EXPECT_EQ(back.gland->shift_max_mm, Vec3(1, 2, 3));
+  EXPECT_EQ(back.gland->rotation_deg, Vec3(4, 5, 6));
+  EXPECT_FALSE(back.gland->shift_residual_mm);
+  EXPECT_EQ(summary_json(back), summary_json(summary));
   EXPECT_TRUE(nlohmann::json::parse(summary_json({}))["gland"].is_null()) << "no target";
   auto older = json;
   older.erase("gland");
@@ -128,7 +129,7 @@ TEST(SummaryJson, of_the_gland_survives_the_round_trip_with_what_is_missing) {
 }
 
 TEST(MapCsv, has_a_line_for_each_hole_and_nothing_where_there_is_no_figure) {
-  const HoleMap map = stylet::testing::synthetic_map();
+  const HoleMap map = synthetic_map();
   std::istringstream lines(hole_map_csv(map));
   std::string line;
   std::getline(lines, line);
@@ -154,7 +155,7 @@ TEST(MapCsv, has_a_line_for_each_hole_and_nothing_where_there_is_no_figure) {
 }
 
 TEST(MapCsv, with_needles_in_place_has_the_figures_from_the_tissue_as_they_hold_it_as_well) {
-  const HoleMap map = stylet::testing::synthetic_map_beside_needles();
+  const HoleMap map = synthetic_map_beside_needles();
   std::istringstream lines(hole_map_csv(map));
   std::string line;
   std::getline(lines, line);
@@ -175,10 +176,10 @@ TEST(MapCsv, with_needles_in_place_has_the_figures_from_the_tissue_as_they_hold_
 }
 
 TEST(MapJson, says_which_needles_are_in_place_and_what_counts_from_there) {
-  const auto alone = nlohmann::json::parse(hole_map_json(stylet::testing::synthetic_map()));
+  const auto alone = nlohmann::json::parse(hole_map_json(synthetic_map()));
   EXPECT_TRUE(alone.at("in_place").empty());
   for (const auto& hole : alone.at("holes")) EXPECT_FALSE(hole.contains("in_place"));
-  const auto beside = nlohmann::json::parse(hole_map_json(stylet::testing::synthetic_map_beside_needles()));
+  const auto beside = nlohmann::json::parse(hole_map_json(synthetic_map_beside_needles()));
   EXPECT_EQ(beside.at("in_place"), (nlohmann::json{"B4", "F4"}));
   for (const auto& hole : beside.at("holes")) {
     ASSERT_EQ(hole.contains("in_place"), hole.at("predicted").get<bool>());
@@ -188,28 +189,8 @@ TEST(MapJson, says_which_needles_are_in_place_and_what_counts_from_there) {
   }
 }
 
-TEST(SummaryJson, keeps_what_it_says_about_needles_in_place) {
-  Summary summary = stylet::testing::synthetic_run().summary;
-  EXPECT_FALSE(nlohmann::json::parse(summary_json(summary)).contains("in_place"));
-  const NeedlesInPlace held{.holes = {"B4"},
-                            .shift_mm = Vec3(0.1, 0.2, 2),
-                            .shift_at_break_mm = std::nullopt,
-                            .shift_max_mm = Vec3(0, 0, 1.5),
-                            .tip_error_mm = Vec3(0.3, 0, -4),
-                            .remarks = {"Needle in place, hole B4: it scraped."}};
-  summary.in_place = held;
-  const auto read = parse_summary_json(summary_json(summary), "test");
-  ASSERT_TRUE(read && read->in_place);
-  EXPECT_EQ(read->in_place->holes, held.holes);
-  EXPECT_EQ(read->in_place->shift_mm, held.shift_mm);
-  EXPECT_EQ(read->in_place->shift_at_break_mm, held.shift_at_break_mm);
-  EXPECT_EQ(read->in_place->shift_max_mm, held.shift_max_mm);
-  EXPECT_EQ(read->in_place->tip_error_mm, held.tip_error_mm);
-  EXPECT_EQ(read->in_place->remarks, held.remarks);
-}
-
 TEST(SummaryJson, has_the_documented_keys_in_order) {
-  const auto run = stylet::testing::synthetic_run();
+  const auto run = synthetic_run();
   const auto json = nlohmann::ordered_json::parse(summary_json(run.summary));
   using Keys = std::vector<std::string>;
   EXPECT_EQ(keys_of(json), (Keys{"version", "scenario", "mesh", "steps", "peak_force_N", "events", "tip_deflection_mm",
@@ -225,22 +206,6 @@ TEST(SummaryJson, has_the_documented_keys_in_order) {
   EXPECT_EQ(json["events"][0]["kind"], "skin_contact");
   EXPECT_EQ(json["target_shift_mm"]["centroid"].size(), 3U);
   EXPECT_EQ(json["peak_force_N"]["axial"].get<double>(), run.summary.peak_axial_N);
-}
-
-TEST(SummaryJson, every_kind_of_event_survives_the_round_trip) {
-  Summary summary;
-  for (const EventKind kind : {EventKind::skin_contact, EventKind::puncture, EventKind::region_entered,
-                               EventKind::retraction_start, EventKind::slip_start, EventKind::withdrawn,
-                               EventKind::bone_contact, EventKind::exited, EventKind::re_entered, EventKind::grazed}) {
-    summary.events.push_back({kind, 0.1, 2.0, -3.0, "Prostata (männlich)"});
-  }
-  const auto back = parse_summary_json(summary_json(summary), "test");
-  ASSERT_TRUE(back.ok()) << back.error().message();
-  ASSERT_EQ(back->events.size(), summary.events.size());
-  for (std::size_t k = 0; k < summary.events.size(); ++k) {
-    EXPECT_EQ(back->events[k].kind, summary.events[k].kind);
-    EXPECT_EQ(back->events[k].region, summary.events[k].region);
-  }
 }
 
 TEST(SummaryJson, changes_of_the_mesh_survive_the_round_trip) {
@@ -263,12 +228,7 @@ TEST(SummaryJson, changes_of_the_mesh_survive_the_round_trip) {
   const auto json = nlohmann::ordered_json::parse(summary_json(summary));
   EXPECT_EQ(json["mesh_changes"][1]["not_moved_because"], "boundary");
   EXPECT_TRUE(json["mesh_changes"][1]["condition"].is_null());
-  const auto back = parse_summary_json(summary_json(summary), "test");
-  ASSERT_TRUE(back.ok()) << back.error().message();
-  ASSERT_EQ(back->mesh_changes.size(), 2U);
-  EXPECT_EQ(summary_json(*back), summary_json(summary));
-  EXPECT_EQ(back->mesh_changes[0].change.dimension, 45);
-  EXPECT_EQ(back->mesh_changes[1].change.refused, RemeshEvent::Refused::boundary);
+  EXPECT_EQ(summary_json(parse_summary_json(summary_json(summary), "test").value()), summary_json(summary));
 }
 
 TEST(SummaryJson, a_value_that_is_not_finite_becomes_null) {
@@ -277,18 +237,14 @@ TEST(SummaryJson, a_value_that_is_not_finite_becomes_null) {
   summary.target_shifts.push_back({summary.target_shift_centroid_mm, summary.target_shift_max_mm});
   const auto json = nlohmann::json::parse(summary_json(summary));
   EXPECT_TRUE(json["target_shift_mm"]["max"].is_null());
-  const auto back = parse_summary_json(summary_json(summary), "test");
-  ASSERT_TRUE(back.ok());
-  EXPECT_TRUE(std::isnan(back->target_shift_max_mm));
+  const auto back = test::value_of(parse_summary_json(summary_json(summary), "test"));
+  EXPECT_TRUE(std::isnan(back.target_shift_max_mm));
 }
 
 TEST(SummaryJson, without_a_target_nothing_has_moved_it) {
   const Summary summary;
   EXPECT_TRUE(nlohmann::json::parse(summary_json(summary))["target_shift_mm"].is_null());
-  const auto back = parse_summary_json(summary_json(summary), "test");
-  ASSERT_TRUE(back.ok()) << back.error().message();
-  EXPECT_TRUE(back->target_shifts.empty());
-  EXPECT_EQ(summary_json(*back), summary_json(summary));
+  EXPECT_TRUE(parse_summary_json(summary_json(summary), "test")->target_shifts.empty());
 }
 
 TEST(SummaryJson, one_of_before_there_were_capacities_is_read) {
@@ -296,10 +252,9 @@ TEST(SummaryJson, one_of_before_there_were_capacities_is_read) {
   summary.contacts_max = 7;
   auto json = nlohmann::json::parse(summary_json(summary));
   json.erase("capacity");
-  const auto back = parse_summary_json(json.dump(), "test");
-  ASSERT_TRUE(back.ok());
-  EXPECT_EQ(back->capacity.contacts.room, 0);
-  EXPECT_EQ(back->contacts_max, 7);
+  const auto back = test::value_of(parse_summary_json(json.dump(), "test"));
+  EXPECT_EQ(back.capacity.contacts.room, 0);
+  EXPECT_EQ(back.contacts_max, 7);
 }
 
 TEST(SummaryJson, foreign_json_is_refused_with_its_place) {

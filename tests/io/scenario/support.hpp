@@ -3,49 +3,13 @@
 
 #include "stylet/io/scenario_io.hpp"
 
-#include <gtest/gtest.h>
-#include <unistd.h>
+#include "support/folder.hpp"
+#include "support/says.hpp"
+#include "support/value_of.hpp"
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <initializer_list>
 #include <string>
 
 namespace stylet::test {
-
-/// A folder for one test, removed afterwards.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "stylet-scenario-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) std::abort();
-    path_ = name;
-  }
-  ~ScratchFolder() {
-    std::error_code code;
-    std::filesystem::remove_all(path_, code);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// Writes a file and returns its path.
-  std::filesystem::path write(const std::string& name, const std::string& content) const {
-    std::filesystem::create_directories((path_ / name).parent_path());
-    std::ofstream(path_ / name, std::ios::binary) << content;
-    return path_ / name;
-  }
-
- private:
-  std::filesystem::path path_;
-};
-
-/// Expects that the message contains every part.
-inline void expect_says(const std::string& message, std::initializer_list<const char*> parts) {
-  for (const char* part : parts)
-    EXPECT_NE(message.find(part), std::string::npos) << '"' << part << "\" is not in:\n" << message;
-}
 
 /// Expects a helpful input error: one line with a place, a value and a cure.
 template <class T>

@@ -12,8 +12,8 @@ namespace {
 const std::string kHeader = "time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz\n";
 
 Result<std::vector<MotionSample>> read_motion(const std::string& content) {
-  const ScratchFolder folder;
-  return read_motion_csv(folder.write("hand.csv", content));
+  const Folder folder;
+  return read_motion_csv(write_file(folder / "hand.csv", content));
 }
 
 /// The message of the error for a motion with this line as its second sample.
@@ -26,31 +26,28 @@ std::string refused_sample(const std::string& line) {
 }  // namespace
 
 TEST(MotionCsv, is_read_as_it_stands) {
-  const auto samples =
-      read_motion(kHeader + "0,1.5,-2,-250,1,0,0,0\n0.5, 1.5, -2, -240.25, 0, 0, 1, 0\n1e0,1.5,-2,-200,0.6,0,0,-0.8\n");
-  ASSERT_TRUE(samples.ok()) << samples.error().message();
-  ASSERT_EQ(samples->size(), 3U);
-  EXPECT_EQ((*samples)[0].time_s, 0.0);
-  EXPECT_EQ((*samples)[0].base.origin, Vec3(1.5, -2, -250));
-  EXPECT_EQ((*samples)[1].time_s, 0.5);
-  EXPECT_EQ((*samples)[1].base.origin, Vec3(1.5, -2, -240.25));
-  EXPECT_EQ((*samples)[1].base.rotation.y(), 1.0);
-  EXPECT_EQ((*samples)[2].time_s, 1.0);
-  EXPECT_NEAR((*samples)[2].base.rotation.w(), 0.6, 1e-15);
-  EXPECT_NEAR((*samples)[2].base.rotation.z(), -0.8, 1e-15);
+  const auto samples = value_of(read_motion(
+      kHeader + "0,1.5,-2,-250,1,0,0,0\n0.5, 1.5, -2, -240.25, 0, 0, 1, 0\n1e0,1.5,-2,-200,0.6,0,0,-0.8\n"));
+  ASSERT_EQ(samples.size(), 3U);
+  EXPECT_EQ(samples[0].time_s, 0.0);
+  EXPECT_EQ(samples[0].base.origin, Vec3(1.5, -2, -250));
+  EXPECT_EQ(samples[1].time_s, 0.5);
+  EXPECT_EQ(samples[1].base.origin, Vec3(1.5, -2, -240.25));
+  EXPECT_EQ(samples[1].base.rotation.y(), 1.0);
+  EXPECT_EQ(samples[2].time_s, 1.0);
+  EXPECT_NEAR(samples[2].base.rotation.w(), 0.6, 1e-15);
+  EXPECT_NEAR(samples[2].base.rotation.z(), -0.8, 1e-15);
 }
 
 TEST(MotionCsv, takes_line_ends_spaces_and_marks_of_other_programs) {
-  const auto samples = read_motion(
-      "\xEF\xBB\xBFtime_s, x_mm, y_mm, z_mm, qw, qx, qy, qz\r\n0,0,0,-250,1,0,0,0\r\n\r\n1,0,0,-200,1,0,0,0\r\n\r\n");
-  ASSERT_TRUE(samples.ok()) << samples.error().message();
-  EXPECT_EQ(samples->size(), 2U);
+  const auto samples = value_of(read_motion(
+      "\xEF\xBB\xBFtime_s, x_mm, y_mm, z_mm, qw, qx, qy, qz\r\n0,0,0,-250,1,0,0,0\r\n\r\n1,0,0,-200,1,0,0,0\r\n\r\n"));
+  EXPECT_EQ(samples.size(), 2U);
 }
 
 TEST(MotionCsv, quaternions_come_out_with_norm_one) {
-  const auto samples = read_motion(kHeader + "0,0,0,-250,1.0009,0,0,0\n1,0,0,-200,0.7071,0.7071,0,0\n");
-  ASSERT_TRUE(samples.ok()) << samples.error().message();
-  for (const MotionSample& sample : *samples) EXPECT_NEAR(sample.base.rotation.norm(), 1.0, 1e-15);
+  const auto samples = value_of(read_motion(kHeader + "0,0,0,-250,1.0009,0,0,0\n1,0,0,-200,0.7071,0.7071,0,0\n"));
+  for (const MotionSample& sample : samples) EXPECT_NEAR(sample.base.rotation.norm(), 1.0, 1e-15);
 }
 
 TEST(MotionCsv, a_motion_written_with_full_precision_is_read_to_the_last_bit) {
@@ -64,25 +61,25 @@ TEST(MotionCsv, a_motion_written_with_full_precision_is_read_to_the_last_bit) {
         << s.base.rotation.w() << ',' << s.base.rotation.x() << ',' << s.base.rotation.y() << ',' << s.base.rotation.z()
         << '\n';
   }
-  const auto samples = read_motion(out.str());
-  ASSERT_TRUE(samples.ok()) << samples.error().message();
-  ASSERT_EQ(samples->size(), motion.samples().size());
-  for (std::size_t i = 0; i < samples->size(); ++i) {
-    EXPECT_EQ((*samples)[i].time_s, motion.samples()[i].time_s);
-    EXPECT_EQ((*samples)[i].base.origin, motion.samples()[i].base.origin);
-    EXPECT_LT((*samples)[i].base.rotation.angularDistance(motion.samples()[i].base.rotation), 1e-7);
+  const auto samples = value_of(read_motion(out.str()));
+  ASSERT_EQ(samples.size(), motion.samples().size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    EXPECT_EQ(samples[i].time_s, motion.samples()[i].time_s);
+    EXPECT_EQ(samples[i].base.origin, motion.samples()[i].base.origin);
+    EXPECT_LT(samples[i].base.rotation.angularDistance(motion.samples()[i].base.rotation), 1e-7);
   }
 }
 
 TEST(MotionCsv, what_is_no_motion_is_refused) {
-  const ScratchFolder folder;
-  expect_says(refusal(read_motion_csv(folder.path() / "no.csv")), {"no.csv", "no such file", "time_s,x_mm"});
+  const Folder folder;
+  expect_says(refusal(read_motion_csv(folder / "no.csv")), {"no.csv", "no such file", "time_s,x_mm"});
   expect_says(refusal(read_motion_csv(folder.path())), {"a folder"});
-  expect_says(refusal(read_motion_csv(folder.write("e.csv", ""))), {"e.csv", "empty"});
-  expect_says(refusal(read_motion_csv(folder.write("m.csv", "NRRD0004\n"))), {"m.csv: this is an NRRD image", "CSV"});
-  expect_says(refusal(read_motion_csv(folder.write("b.csv", std::string("time\0", 5)))),
+  expect_says(refusal(read_motion_csv(write_file(folder / "e.csv", ""))), {"e.csv", "empty"});
+  expect_says(refusal(read_motion_csv(write_file(folder / "m.csv", "NRRD0004\n"))),
+              {"m.csv: this is an NRRD image", "CSV"});
+  expect_says(refusal(read_motion_csv(write_file(folder / "b.csv", std::string("time\0", 5)))),
               {"b.csv, line 1", "not a line of text"});
-  expect_says(refusal(read_motion_csv(folder.write("l.csv", std::string(5000, 'x')))), {"l.csv, line 1"});
+  expect_says(refusal(read_motion_csv(write_file(folder / "l.csv", std::string(5000, 'x')))), {"l.csv, line 1"});
 }
 
 TEST(MotionCsv, another_header_is_refused_with_the_right_one) {
@@ -134,12 +131,12 @@ TEST(MotionCsv, positions_in_other_units_are_refused) {
 }
 
 TEST(MotionCsv, the_header_says_the_order_of_the_columns) {
-  const auto samples = read_motion("qx,qy,qz,qw,time_s,x_mm,y_mm,z_mm\n0,0,0,1,0,0,0,-250\n0,0,0.6,0.8,1,3,2,-200\n");
-  ASSERT_TRUE(samples.ok()) << samples.error().message();
-  EXPECT_EQ((*samples)[1].time_s, 1.0);
-  EXPECT_EQ((*samples)[1].base.origin, Vec3(3, 2, -200));
-  EXPECT_NEAR((*samples)[1].base.rotation.w(), 0.8, 1e-15);
-  EXPECT_NEAR((*samples)[1].base.rotation.z(), 0.6, 1e-15);
+  const auto samples =
+      value_of(read_motion("qx,qy,qz,qw,time_s,x_mm,y_mm,z_mm\n0,0,0,1,0,0,0,-250\n0,0,0.6,0.8,1,3,2,-200\n"));
+  EXPECT_EQ(samples[1].time_s, 1.0);
+  EXPECT_EQ(samples[1].base.origin, Vec3(3, 2, -200));
+  EXPECT_NEAR(samples[1].base.rotation.w(), 0.8, 1e-15);
+  EXPECT_NEAR(samples[1].base.rotation.z(), 0.6, 1e-15);
   expect_says(refusal(read_motion("qx,qy,qz,qw,time_s,x_mm,y_mm,z_mm\n0,0,0,1,0,0,0,-250\n0,0,0,2,1,3,2,-200\n")),
               {"line 3, columns 1 to 4 (qx, qy, qz, qw)", "norm is 2"});
 }
@@ -168,9 +165,9 @@ std::string pushed_along(const Vec3& direction, bool header_real_first, bool num
 
 TEST(MotionCsv, quaternions_in_the_other_order_than_the_header_says_are_noticed) {
   const auto noticed = [](const std::string& content) {
-    const ScratchFolder folder;
+    const Folder folder;
     std::vector<std::string> notes;
-    const auto samples = read_motion_csv(folder.write("hand.csv", content), &notes);
+    const auto samples = read_motion_csv(write_file(folder / "hand.csv", content), &notes);
     return samples.ok() ? (notes.empty() ? std::string() : notes.front()) : samples.error().message();
   };
   for (const Vec3& way : {Vec3(0, 0, 1), Vec3(0.1, 0.2, 1), Vec3(-0.2, 0.1, 1), Vec3(1, 0.3, 0.2)}) {

@@ -10,8 +10,8 @@ const std::string kHead = "[patient]\nsource = \"phantom\"\n";  // lines 1 and 2
 const std::string kTail = "\n[[insertion]]\nhole = \"D4\"\n";
 
 Result<Scenario> read(const std::string& content) {
-  const ScratchFolder folder;
-  return read_scenario(folder.write("case.toml", content));
+  const Folder folder;
+  return read_scenario(write_file(folder / "case.toml", content));
 }
 
 /// The message of the error for a file with this content; checks that it names the file.
@@ -31,17 +31,16 @@ std::string refused_line_4(const std::string& table, const std::string& line) {
 }  // namespace
 
 TEST(ReadScenario, five_lines_are_enough) {
-  const auto scenario = read(kHead + kTail);
-  ASSERT_TRUE(scenario.ok()) << scenario.error().message();
+  const auto scenario = value_of(read(kHead + kTail));
   Scenario expected;
   expected.patient.source = "phantom";
   expected.insertions.resize(1);
   expected.insertions[0].hole = "D4";
-  EXPECT_EQ(*scenario, expected) << "all else is the default";
+  EXPECT_EQ(scenario, expected) << "all else is the default";
 }
 
 TEST(ReadScenario, takes_values_of_every_kind) {
-  const auto scenario = read(R"(
+  const auto scenario = value_of(read(R"(
 name = "everything"
 [patient]
 source = "phantom"
@@ -70,26 +69,25 @@ direction = [0, 0.1, 1]
 hole = "d3.5"
 depth_mm = 50
 retract = false
-)");
-  ASSERT_TRUE(scenario.ok()) << scenario.error().message();
-  EXPECT_EQ(scenario->name, "everything");
-  EXPECT_EQ(scenario->patient.scale, 1000);
-  EXPECT_EQ(scenario->patient.regions,
+)"));
+  EXPECT_EQ(scenario.name, "everything");
+  EXPECT_EQ(scenario.patient.scale, 1000);
+  EXPECT_EQ(scenario.patient.regions,
             (std::map<std::string, std::string>{{"1", "peripheral_zone"}, {"GTV 1.5", "prostate"}}));
-  EXPECT_EQ(scenario->tissue.at("prostate").young_kPa, 35);
-  EXPECT_EQ(scenario->tissue.at("prostate").puncture_N, default_tissue("prostate").puncture_N);
-  EXPECT_EQ(scenario->tissue.at("my.region").puncture_N, 0.25);
-  EXPECT_EQ(scenario->fixed.regions, (std::vector<std::string>{"pubic_arch", "band"}));
-  EXPECT_EQ((*scenario->fixed.box_mm)[2], -3.5);
-  EXPECT_EQ(scenario->mesh.nodes, 1234);
-  EXPECT_FALSE(scenario->mesh.stiff_band);
-  EXPECT_EQ(scenario->coupling.rule, CouplingSettings::Rule::paper);
-  EXPECT_EQ((*scenario->grid.centre_mm)[0], 1.5);
-  ASSERT_EQ(scenario->insertions.size(), 2U);
-  EXPECT_EQ((*scenario->insertions[0].direction)[1], 0.1);
-  EXPECT_FALSE(scenario->insertions[1].retract);
-  EXPECT_EQ(scenario->insertions[1].hole, "d3.5");
-  EXPECT_EQ(scenario->insertions[1].depth_mm, 50);
+  EXPECT_EQ(scenario.tissue.at("prostate").young_kPa, 35);
+  EXPECT_EQ(scenario.tissue.at("prostate").puncture_N, default_tissue("prostate").puncture_N);
+  EXPECT_EQ(scenario.tissue.at("my.region").puncture_N, 0.25);
+  EXPECT_EQ(scenario.fixed.regions, (std::vector<std::string>{"pubic_arch", "band"}));
+  EXPECT_EQ((*scenario.fixed.box_mm)[2], -3.5);
+  EXPECT_EQ(scenario.mesh.nodes, 1234);
+  EXPECT_FALSE(scenario.mesh.stiff_band);
+  EXPECT_EQ(scenario.coupling.rule, CouplingSettings::Rule::paper);
+  EXPECT_EQ((*scenario.grid.centre_mm)[0], 1.5);
+  ASSERT_EQ(scenario.insertions.size(), 2U);
+  EXPECT_EQ((*scenario.insertions[0].direction)[1], 0.1);
+  EXPECT_FALSE(scenario.insertions[1].retract);
+  EXPECT_EQ(scenario.insertions[1].hole, "d3.5");
+  EXPECT_EQ(scenario.insertions[1].depth_mm, 50);
 }
 
 TEST(ReadScenario, tables_may_be_written_inline) {
@@ -116,44 +114,41 @@ TEST(ReadScenario, windows_line_ends_and_a_byte_order_mark_are_no_matter) {
 }
 
 TEST(ReadScenario, relative_names_start_in_the_scenarios_folder) {
-  const ScratchFolder folder;
-  folder.write("data/here", "");
-  const auto file = folder.write("scenarios/case.toml",
-                                 "[patient]\nsource = \"../data/case.dcm\"\n[[insertion]]\nmotion = \"hand.csv\"\n");
+  const Folder folder;
+  write_file(folder / "data/here", "");
+  const auto file = write_file(folder / "scenarios/case.toml",
+                               "[patient]\nsource = \"../data/case.dcm\"\n[[insertion]]\nmotion = \"hand.csv\"\n");
   const auto scenario = read_scenario(file);
   ASSERT_TRUE(scenario.ok()) << scenario.error().message();
-  EXPECT_EQ(scenario->patient.source, (folder.path() / "data/case.dcm").string());
-  EXPECT_EQ(scenario->insertions[0].motion, (folder.path() / "scenarios/hand.csv").string());
+  EXPECT_EQ(scenario->patient.source, (folder / "data/case.dcm").string());
+  EXPECT_EQ(scenario->insertions[0].motion, (folder / "scenarios/hand.csv").string());
   // The paths are absolute even if the scenario's own path is relative.
-  const auto relative = read_scenario(std::filesystem::relative(file));
-  ASSERT_TRUE(relative.ok());
-  EXPECT_EQ(relative->insertions[0].motion, (folder.path() / "scenarios/hand.csv").string());
+  const auto relative = value_of(read_scenario(std::filesystem::relative(file)));
+  EXPECT_EQ(relative.insertions[0].motion, (folder / "scenarios/hand.csv").string());
 }
 
 TEST(ReadScenario, absolute_names_and_the_phantom_stay) {
-  const auto scenario = read("[patient]\nsource = \"/data/case.dcm\"" + kTail);
-  ASSERT_TRUE(scenario.ok());
-  EXPECT_EQ(scenario->patient.source, "/data/case.dcm");
+  const auto scenario = value_of(read("[patient]\nsource = \"/data/case.dcm\"" + kTail));
+  EXPECT_EQ(scenario.patient.source, "/data/case.dcm");
   EXPECT_EQ(read(kHead + kTail)->patient.source, "phantom");
 }
 
 TEST(ReadScenario, refuses_what_is_no_scenario) {
-  const ScratchFolder folder;
-  expect_says(refusal(read_scenario(folder.path() / "nowhere.toml")),
-              {"nowhere.toml", "no such file", "scenarios/demo.toml"});
+  const Folder folder;
+  expect_says(refusal(read_scenario(folder / "nowhere.toml")), {"nowhere.toml", "no such file", "scenarios/demo.toml"});
   expect_says(refusal(read_scenario(folder.path())), {folder.path().c_str(), "a folder", "Name a scenario"});
-  expect_says(refusal(read_scenario(folder.write("empty.toml", ""))), {"empty.toml", "empty", "--print-schema"});
-  expect_says(refusal(read_scenario(folder.write("b.toml", std::string("[patient]\n\0\1\2", 13)))),
+  expect_says(refusal(read_scenario(write_file(folder / "empty.toml", ""))), {"empty.toml", "empty", "--print-schema"});
+  expect_says(refusal(read_scenario(write_file(folder / "b.toml", std::string("[patient]\n\0\1\2", 13)))),
               {"b.toml", "binary", "Name a scenario"});
-  expect_says(refusal(read_scenario(folder.write("case.nrrd", "NRRD0004\ntype: uchar\n"))),
+  expect_says(refusal(read_scenario(write_file(folder / "case.nrrd", "NRRD0004\ntype: uchar\n"))),
               {"case.nrrd: this is an NRRD image", "a scenario (TOML) is expected", "source = \"case.nrrd\""});
-  expect_says(refusal(read_scenario(folder.write("c.toml", "{\"format\": \"stylet-contours\"}"))),
+  expect_says(refusal(read_scenario(write_file(folder / "c.toml", "{\"format\": \"stylet-contours\"}"))),
               {"c.toml: this is a JSON file"});
-  expect_says(refusal(read_scenario(folder.write("l.toml",
-                                                 "name = \"Pr\xFC"
-                                                 "fung\"\n"))),
+  expect_says(refusal(read_scenario(write_file(folder / "l.toml",
+                                               "name = \"Pr\xFC"
+                                               "fung\"\n"))),
               {"l.toml, line 1", "UTF-8"});
-  expect_says(refusal(read_scenario(folder.write("big.toml", std::string(2 << 20, '#')))),
+  expect_says(refusal(read_scenario(write_file(folder / "big.toml", std::string(2 << 20, '#')))),
               {"big.toml: 2097152 bytes are too many"});
 }
 
@@ -200,12 +195,11 @@ fixed.regions = [ # one "per line"
 [ tissue . "a.b" ]
 young_kPa = +1_0.5e0
 )";
-  const auto scenario = read(head + "[[ insertion ]] # x\r\nhole = \"D4\"\r\n");
-  ASSERT_TRUE(scenario.ok()) << scenario.error().message();
-  EXPECT_EQ(scenario->name, "many \"lines\", a \u00E9, continued, [brackets}\"\"\"\"\"");
-  EXPECT_EQ(scenario->patient.source, "/phan\\tom");
-  EXPECT_EQ(scenario->fixed.regions, (std::vector<std::string>{"pubic_arch", "b#[]{}", "c"}));
-  EXPECT_EQ(scenario->tissue.at("a.b").young_kPa, 10.5);
+  const auto scenario = value_of(read(head + "[[ insertion ]] # x\r\nhole = \"D4\"\r\n"));
+  EXPECT_EQ(scenario.name, "many \"lines\", a \u00E9, continued, [brackets}\"\"\"\"\"");
+  EXPECT_EQ(scenario.patient.source, "/phan\\tom");
+  EXPECT_EQ(scenario.fixed.regions, (std::vector<std::string>{"pubic_arch", "b#[]{}", "c"}));
+  EXPECT_EQ(scenario.tissue.at("a.b").young_kPa, 10.5);
   expect_says(refused(head + "[ [insertion] ]\nhole = \"D4\"\n"), {"case.toml, line 12, column 1", "[[insertion]]"});
 }
 
@@ -240,11 +234,10 @@ TEST(ReadScenario, takes_keys_of_all_tissue_beside_those_of_one) {
                            "[tissue.prostate]\nyoung_kPa = 35\n[tissue]\nelement = \"p1\"\n",
                            "tissue.element = \"p1\"\ntissue.prostate.young_kPa = 35\n",
                            "tissue = {element = \"p1\", prostate = {young_kPa = 35}}\n"}) {
-    const auto scenario = read(text + kHead + "[[insertion]]\nhole = \"D4\"\n");
-    ASSERT_TRUE(scenario.ok()) << scenario.error().message();
-    EXPECT_EQ(scenario->tissue_model.element, ElementChoice::p1);
-    EXPECT_EQ(scenario->tissue.at("prostate").young_kPa, 35);
-    EXPECT_EQ(scenario->tissue.size(), 1U);
+    const auto scenario = value_of(read(text + kHead + "[[insertion]]\nhole = \"D4\"\n"));
+    EXPECT_EQ(scenario.tissue_model.element, ElementChoice::p1);
+    EXPECT_EQ(scenario.tissue.at("prostate").young_kPa, 35);
+    EXPECT_EQ(scenario.tissue.size(), 1U);
   }
   expect_says(refused("[tissue.element]\nyoung_kPa = 35\n" + kHead),
               {"line 1", "tissue.element is a table, a value is expected", "below [tissue]"});
@@ -323,20 +316,19 @@ TEST(ReadScenario, refuses_what_does_not_go_together_and_names_the_line) {
 }
 
 TEST(ReadScenario, takes_the_needles_and_goals_of_a_plan) {
-  const auto scenario = read(
+  const auto scenario = value_of(read(
       kHead +
       "[template]\ncentre_mm = [0, 5]\n[plan]\nstrength_U = 0.5\nbase_mm = 40\n[[plan.needle]]\nhole = \"D4\"\ntrain = "
       "\"S-1-S\"\n[[plan.needle]]\nat_mm = [10, 5]\nseeds_mm = [0, 10]\nstranded = true\n[[plan.goal]]\nstructure = "
-      "\"prostate\"\nmetric = \"D90_percent\"\nbound = \">=100\"\n");
-  ASSERT_TRUE(scenario.ok()) << scenario.error().message();
-  EXPECT_TRUE(scenario->plan.is_given());
-  ASSERT_EQ(scenario->plan.needles.size(), 2U);
-  EXPECT_EQ(scenario->plan.needles[0].train, "S-1-S");
-  EXPECT_FALSE(scenario->plan.needles[0].stranded.has_value());
-  EXPECT_EQ(scenario->plan.needles[1].seeds_mm, (std::vector<double>{0.0, 10.0}));
-  EXPECT_TRUE(scenario->plan.needles[1].stranded.value_or(false));
-  ASSERT_EQ(scenario->plan.goal_table.size(), 1U);
-  EXPECT_EQ(scenario->plan.goal_table[0].bound, ">=100");
+      "\"prostate\"\nmetric = \"D90_percent\"\nbound = \">=100\"\n"));
+  EXPECT_TRUE(scenario.plan.is_given());
+  ASSERT_EQ(scenario.plan.needles.size(), 2U);
+  EXPECT_EQ(scenario.plan.needles[0].train, "S-1-S");
+  EXPECT_FALSE(scenario.plan.needles[0].stranded.has_value());
+  EXPECT_EQ(scenario.plan.needles[1].seeds_mm, (std::vector<double>{0.0, 10.0}));
+  EXPECT_TRUE(scenario.plan.needles[1].stranded.value_or(false));
+  ASSERT_EQ(scenario.plan.goal_table.size(), 1U);
+  EXPECT_EQ(scenario.plan.goal_table[0].bound, ">=100");
 }
 
 TEST(ReadScenario, refuses_a_plan_that_does_not_fit_together_and_names_the_line) {
@@ -379,16 +371,14 @@ TEST(ReadScenario, puts_a_preset_under_what_is_given_wherever_it_stands) {
   const std::string given = "[tissue.body]\nyoung_kPa = " + to_string({.number = typical}) + "\n";
   const std::string preset = "[tissue]\npreset = \"firm\"\n";
   for (const std::string& text : {preset + own, own + preset}) {
-    const auto scenario = parse_scenario(kHead + text + kTail, "case.toml");
-    ASSERT_TRUE(scenario.ok()) << scenario.error().message();
-    EXPECT_EQ(young_kPa(*scenario), firm.young_kPa);
-    EXPECT_EQ(scenario->tissue.at("body").cutting_N, 0.7);
+    const auto scenario = value_of(parse_scenario(kHead + text + kTail, "case.toml"));
+    EXPECT_EQ(young_kPa(scenario), firm.young_kPa);
+    EXPECT_EQ(scenario.tissue.at("body").cutting_N, 0.7);
   }
   const std::vector<std::string> late{"tissue.preset=\"firm\""};
-  const auto scenario = parse_scenario(kHead + given + kTail, "case.toml", late);
-  ASSERT_TRUE(scenario.ok()) << scenario.error().message();
-  EXPECT_EQ(young_kPa(*scenario), typical) << "given, though it is the other preset's default";
-  EXPECT_EQ(tissue_of(*scenario, "prostate"), default_tissue("prostate", TissuePreset::firm));
+  const auto scenario = value_of(parse_scenario(kHead + given + kTail, "case.toml", late));
+  EXPECT_EQ(young_kPa(scenario), typical) << "given, though it is the other preset's default";
+  EXPECT_EQ(tissue_of(scenario, "prostate"), default_tissue("prostate", TissuePreset::firm));
 }
 
 TEST(ReadScenario, tells_the_first_of_several_mistakes) {

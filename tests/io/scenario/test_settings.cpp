@@ -10,8 +10,8 @@ const std::string kOne = "[patient]\nsource = \"phantom\"\n[[insertion]]\nhole =
 const std::string kTwo = kOne + "[[insertion]]\nhole = \"d4\"\n";
 
 Result<Scenario> with(const std::string& content, const std::vector<std::string>& settings) {
-  const ScratchFolder folder;
-  return read_scenario(folder.write("case.toml", content), settings);
+  const Folder folder;
+  return read_scenario(write_file(folder / "case.toml", content), settings);
 }
 
 Scenario one_with(const std::vector<std::string>& settings) {
@@ -86,19 +86,19 @@ TEST(Settings, reach_regions_and_labels_with_any_name) {
 }
 
 TEST(Settings, name_files_from_the_current_folder_or_else_from_the_scenarios) {
-  const ScratchFolder folder;
-  const auto file = folder.write("case.toml", kOne);
-  folder.write("here/mask.nii", "x");
+  const Folder folder;
+  const auto file = write_file(folder / "case.toml", kOne);
+  write_file(folder / "here/mask.nii", "x");
   const auto before = std::filesystem::current_path();
-  std::filesystem::current_path(folder.path() / "here");
+  std::filesystem::current_path(folder / "here");
   const std::vector<std::string> there{"patient.source=mask.nii"};
   const std::vector<std::string> nowhere{"patient.source=contours.dcm"};
   const auto a = read_scenario(file, there);
   const auto b = read_scenario(file, nowhere);
   std::filesystem::current_path(before);
   ASSERT_TRUE(a.ok() && b.ok());
-  EXPECT_EQ(a->patient.source, (folder.path() / "here/mask.nii").string());
-  EXPECT_EQ(b->patient.source, (folder.path() / "contours.dcm").string());
+  EXPECT_EQ(a->patient.source, (folder / "here/mask.nii").string());
+  EXPECT_EQ(b->patient.source, (folder / "contours.dcm").string());
   EXPECT_EQ(one_with({"patient.source=phantom"}).patient.source, "phantom");
 }
 

@@ -4,7 +4,6 @@
 #include "stylet/phantom/phantom.hpp"
 
 #include <algorithm>
-#include <iterator>
 
 using namespace stylet;
 using namespace stylet::test;
@@ -12,11 +11,6 @@ using namespace stylet::test;
 namespace {
 
 const std::filesystem::path kSource = STYLET_SOURCE_DIR;
-
-std::string content(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
 
 std::vector<std::filesystem::path> shipped() {
   std::vector<std::filesystem::path> files;
@@ -70,19 +64,19 @@ TEST(ShippedScenarios, are_read_without_complaint) {
 }
 
 TEST(ShippedScenarios, stay_complete_when_their_comments_are_taken_away) {
-  const ScratchFolder folder;
+  const Folder folder;
   for (const auto& file : shipped()) {
     std::string text;
-    std::istringstream stream(content(file));
+    std::istringstream stream(content_of(file));
     for (std::string line; std::getline(stream, line);) text += line.starts_with('#') ? "\n" : line + "\n";
-    EXPECT_TRUE(read_scenario(folder.write(file.filename().string(), text)).ok()) << file;
+    EXPECT_TRUE(read_scenario(write_file(folder / file.filename(), text)).ok()) << file;
   }
 }
 
 TEST(ShippedScenarios, show_keys_in_their_comments_that_exist) {
   // A user may remove the # from "# key = value" and "# [table]" in a comment.
   for (const auto& file : shipped()) {
-    std::istringstream stream(content(file));
+    std::istringstream stream(content_of(file));
     std::string table;
     Scenario scratch;
     for (std::string line; std::getline(stream, line);) {
@@ -107,19 +101,17 @@ TEST(ShippedScenarios, show_keys_in_their_comments_that_exist) {
 }
 
 TEST(ShippedScenarios, examples_are_ten_lines_or_so_and_name_no_folder_of_anyone) {
-  const std::string mask = content(kSource / "scenarios/examples/mask.toml");
+  const std::string mask = content_of(kSource / "scenarios/examples/mask.toml");
   EXPECT_LE(std::count(mask.begin(), mask.end(), '\n'), 10);
-  for (const auto& file : shipped()) EXPECT_EQ(content(file).find("shared"), std::string::npos) << file;
+  for (const auto& file : shipped()) EXPECT_EQ(content_of(file).find("shared"), std::string::npos) << file;
 }
 
 TEST(DemoScenario, goes_through_the_gland_and_past_urethra_rectum_and_pubic_arch) {
-  const auto scenario = read_scenario(kSource / "scenarios/demo.toml");
-  ASSERT_TRUE(scenario.ok()) << scenario.error().message();
-  ASSERT_EQ(scenario->patient.source, "phantom");
-  ASSERT_EQ(scenario->insertions.size(), 1U);
-  ASSERT_TRUE(scenario->insertions[0].hole.has_value());
-  const auto offset = scenario->grid.offset_mm(*scenario->insertions[0].hole);
-  ASSERT_TRUE(offset.ok());
+  const auto scenario = value_of(read_scenario(kSource / "scenarios/demo.toml"));
+  ASSERT_EQ(scenario.patient.source, "phantom");
+  ASSERT_EQ(scenario.insertions.size(), 1U);
+  ASSERT_TRUE(scenario.insertions[0].hole.has_value());
+  const auto offset = value_of(scenario.grid.offset_mm(*scenario.insertions[0].hole));
 
   const ContourSet patient = demo_patient({.seed = 0, .slice_spacing_mm = 1.0});
   const Roi& gland = structure(patient, "Prostate");
@@ -135,8 +127,8 @@ TEST(DemoScenario, goes_through_the_gland_and_past_urethra_rectum_and_pubic_arch
     }
   }
   centre /= area;
-  const double x = centre.x() + (*offset)[0];
-  const double y = centre.y() - (*offset)[1];
+  const double x = centre.x() + offset[0];
+  const double y = centre.y() - offset[1];
 
   const auto in_gland = heights_inside(gland, x, y);
   EXPECT_GE(in_gland.size(), 30U) << "mm of gland on the way";
@@ -154,7 +146,7 @@ TEST(DemoScenario, goes_through_the_gland_and_past_urethra_rectum_and_pubic_arch
 }
 
 TEST(ScenarioGuide, shows_the_keys_of_this_version) {
-  const std::string guide = content(kSource / "docs/scenario.md");
+  const std::string guide = content_of(kSource / "docs/scenario.md");
   EXPECT_NE(guide.find("```toml\n" + schema_text() + "```"), std::string::npos)
       << "docs/scenario.md differs from stylet insert --print-schema: run scripts/update_reference";
 }

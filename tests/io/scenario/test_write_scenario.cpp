@@ -31,8 +31,8 @@ Scenario with_plan_needle(Scenario s) {
 }
 
 Scenario read_back(const std::string& text) {
-  const ScratchFolder folder;
-  const auto scenario = read_scenario(folder.write("case.toml", text));
+  const Folder folder;
+  const auto scenario = read_scenario(write_file(folder / "case.toml", text));
   if (!scenario) {
     ADD_FAILURE() << scenario.error().message() << "\n" << text;
     return {};
@@ -250,8 +250,8 @@ TEST(Schema, is_at_most_110_columns_wide) {
 }
 
 TEST(Schema, is_a_toml_file_that_lacks_only_a_patient) {
-  const ScratchFolder folder;
-  expect_says(refusal(read_scenario(folder.write("my.toml", schema_text()))), {"there is no patient"});
+  const Folder folder;
+  expect_says(refusal(read_scenario(write_file(folder / "my.toml", schema_text()))), {"there is no patient"});
 }
 
 TEST(Schema, runs_once_source_and_hole_are_uncommented) {

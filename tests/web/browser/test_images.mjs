@@ -2,17 +2,11 @@
 // Ultrasound and X-ray in the page: the stepper moves the probe, the needle's tip is found in the picture and its place
 // read there, the picture can be frozen, the C-arm turned, and a recording looked at in the same way.
 import assert from 'node:assert/strict';
-import { after, before } from 'node:test';
-import {
-  inOrder, keepPicture, openBrowser, openVisitor, readout, skipWithoutChromium, until, untilReadout, waitUntilReady,
-} from './browser.mjs';
-import { makeFolder, startServer } from './server.mjs';
+import { keepPicture, readout, until, untilReadout, waitUntilReady } from './browser.mjs';
+import { stage } from './stage.mjs';
 
-skipWithoutChromium();
 const [FRAME, STATUS, IMAGE] = [2, 3, 11];  // docs/live_protocol.md
-const test = inOrder();
-const { folder, remove } = makeFolder();
-let server, browser, page, problems;
+let page, problems;
 let image = null;   // the newest picture: its text and its values
 let status = null;
 let tip = null;     // [mm] LPS
@@ -28,16 +22,9 @@ const listen = async (p) => p.on('websocket', (socket) => socket.on('framereceiv
   images++;
 }));
 
-before(async () => {
-  // A hole in the plane of the probe, so that the sagittal picture shows the whole needle.
-  server = await startServer(folder, { options: ['--set', 'insertion.hole="D3"'] });
-  browser = await openBrowser({ webgl: false });
-  ({ page, problems } = await openVisitor(browser, server.url, { prepare: listen }));
-});
-after(async () => {
-  await browser?.close();
-  await server?.kill();
-  remove();
+// A hole in the plane of the probe, so that the sagittal picture shows the whole needle.
+const { test } = stage({
+  options: ['--set', 'insertion.hole="D3"'], prepare: listen, ready: async (set) => ({ page, problems } = set),
 });
 
 const newImage = async (what, good) => {

@@ -5,19 +5,14 @@ import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readdirSync } from 'node:fs';
 import path from 'node:path';
-import { after, before } from 'node:test';
 import { fileURLToPath } from 'node:url';
-import {
-  inOrder, keepPicture, openBrowser, openVisitor, readout, skipWithoutChromium, until, waitUntilReady,
-} from './browser.mjs';
-import { makeFolder, startServer } from './server.mjs';
+import { keepPicture, openVisitor, readout, until, waitUntilReady } from './browser.mjs';
+import { startServer } from './server.mjs';
+import { stage } from './stage.mjs';
 
-skipWithoutChromium();
 const SCENARIO = path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../../../scenarios/implant.toml');
 const [STATUS, PLAN, IMPLANT, SEEDS] = [3, 7, 8, 9];  // docs/live_protocol.md
-const test = inOrder();
-const { folder, remove } = makeFolder();
-let server, browser, page, problems;
+let page, problems;
 const newest = {};  // the newest message of each kind
 
 const listen = async (p) => p.on('websocket', (socket) => socket.on('framereceived', ({ payload }) => {
@@ -25,18 +20,13 @@ const listen = async (p) => p.on('websocket', (socket) => socket.on('framereceiv
   if ([STATUS, PLAN, IMPLANT, SEEDS].includes(kind)) newest[kind] = JSON.parse(payload.subarray(8).toString());
 }));
 
-before(async () => {
-  // The scenario's needles are preloaded; here each seed is pushed out by itself.
-  server = await startServer(folder, { scenario: SCENARIO, options: ['--set', 'procedure.technique="pushed"'] });
-  // In software the 3D view takes most of the time; it is there for pictures only.
-  browser = await openBrowser({ webgl: false });
-  ({ page, problems } = await openVisitor(browser, server.url, { prepare: listen }));
+// The scenario's needles are preloaded; here each seed is pushed out by itself. In software the 3D view takes most of the
+// time; it is there for pictures only.
+const set = stage({
+  scenario: SCENARIO, options: ['--set', 'procedure.technique="pushed"'], prepare: listen,
+  ready: async () => ({ page, problems } = set),
 });
-after(async () => {
-  await browser?.close();
-  await server?.kill();
-  remove();
-});
+const { test, folder } = set;
 
 /** The number of a figure of the plan, by its name. */
 async function planFigure(name) {
@@ -207,10 +197,10 @@ test('a recording of a needle shows the seeds of each moment, and its panel cann
 
 test('a preloaded needle leaves its train as it is drawn back; a lost seed is said', async () => {
   await page.close();
-  await server.kill();
-  server = await startServer(folder, { scenario: SCENARIO, options: ['--set', 'seed.loss_percent=100'] });
+  await set.server.kill();
+  set.server = await startServer(folder, { scenario: SCENARIO, options: ['--set', 'seed.loss_percent=100'] });
   for (const kind of [STATUS, PLAN, IMPLANT, SEEDS]) delete newest[kind];
-  ({ page, problems } = await openVisitor(browser, server.url, { prepare: listen }));
+  ({ page, problems } = await openVisitor(set.browser, set.server.url, { prepare: listen }));
   await waitUntilTissueMoves();
   await until('no seeds', () => newest[IMPLANT].seeds.length, (count) => count === 0);
   await page.keyboard.press('3');

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Moves the needle without a mouse: with keys and with a gamepad.
 import assert from 'node:assert/strict';
-import { after, before } from 'node:test';
-import { inOrder, keepPicture, listenToEvents, openBrowser, openVisitor, readout, skipWithoutChromium, until, untilReadout, waitUntilReady } from './browser.mjs';
-import { makeFolder, SMALL, startServer } from './server.mjs';
+import { keepPicture, listenToEvents, readout, until, untilReadout, waitUntilReady } from './browser.mjs';
+import { stage } from './stage.mjs';
 
-skipWithoutChromium();
 const FRAME = 2;  // docs/live_protocol.md
-const test = inOrder();
-const { folder, remove } = makeFolder();
-let server, browser, page, problems;
+let page, problems;
 
 /** A gamepad with the standard mapping: four axes and seventeen buttons. */
 function bringGamepad() {
@@ -17,21 +13,15 @@ function bringGamepad() {
   navigator.getGamepads = () => [null, window.pad.connected ? window.pad : null];
 }
 
-before(async () => {
-  server = await startServer(folder, { options: SMALL });
-  browser = await openBrowser({ webgl: false });
-  ({ page, problems } = await openVisitor(browser, server.url, {
-    async prepare(p) {
-      watchFrames(p);
-      await p.addInitScript(bringGamepad);
-    },
-  }));
-  await waitUntilReady(page);
-});
-after(async () => {
-  await browser?.close();
-  await server?.kill();
-  remove();
+const { test } = stage({
+  async prepare(p) {
+    watchFrames(p);
+    await p.addInitScript(bringGamepad);
+  },
+  async ready(set) {
+    ({ page, problems } = set);
+    await waitUntilReady(page);
+  },
 });
 
 const pose = () => page.locator('.pose').textContent();

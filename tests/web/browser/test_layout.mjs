@@ -1,29 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // On screens from small to huge, every control is visible and can be reached with a pointer, and no text is cut off.
 import assert from 'node:assert/strict';
-import { after, before } from 'node:test';
-import { inOrder, keepPicture, openBrowser, openVisitor, skipWithoutChromium, turnWheel, until, untilReadout, waitUntilReady } from './browser.mjs';
-import { makeFolder, SMALL, startServer } from './server.mjs';
+import { keepPicture, turnWheel, until, untilReadout, waitUntilReady } from './browser.mjs';
+import { stage } from './stage.mjs';
 
-skipWithoutChromium();
-const test = inOrder();
-const { folder, remove } = makeFolder();
-let server, browser, visitor;
-
-before(async () => {
-  server = await startServer(folder, { options: SMALL });
-  browser = await openBrowser({ webgl: false });
-  visitor = await openVisitor(browser, server.url);
-  await waitUntilReady(visitor.page);
-  await turnWheel(visitor.page, 30);
-  await untilReadout(visitor.page, 'Depth', (depth) => depth === 27);
-  // Notices about the coarse mesh cover the curve for some seconds.
-  await until('the notices to go', () => visitor.page.locator('.notice').count(), (count) => count === 0);
-});
-after(async () => {
-  await browser?.close();
-  await server?.kill();
-  remove();
+let visitor;
+const { test } = stage({
+  async ready(set) {
+    visitor = set;
+    await waitUntilReady(visitor.page);
+    await turnWheel(visitor.page, 30);
+    await untilReadout(visitor.page, 'Depth', (depth) => depth === 27);
+    // Notices about the coarse mesh cover the curve for some seconds.
+    await until('the notices to go', () => visitor.page.locator('.notice').count(), (count) => count === 0);
+  },
 });
 
 /** The faults of the page's layout, in words. */

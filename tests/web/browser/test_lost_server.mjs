@@ -1,31 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A server that is killed and started again: the page reports the lost connection and reconnects on its own.
 import assert from 'node:assert/strict';
-import { after, before } from 'node:test';
-import { inOrder, keepPicture, openBrowser, openVisitor, skipWithoutChromium, turnWheel, untilReadout, waitUntilReady } from './browser.mjs';
-import { makeFolder, SMALL, startServer } from './server.mjs';
+import { keepPicture, turnWheel, untilReadout, waitUntilReady } from './browser.mjs';
+import { SMALL, startServer } from './server.mjs';
+import { stage } from './stage.mjs';
 
-skipWithoutChromium();
-const test = inOrder();
-const { folder, remove } = makeFolder();
-let server, browser, page, problems;
-
-before(async () => {
-  server = await startServer(folder, { options: SMALL });
-  browser = await openBrowser({ webgl: false });
-  ({ page, problems } = await openVisitor(browser, server.url));
-});
-after(async () => {
-  await browser?.close();
-  await server?.kill();
-  remove();
-});
+let page, problems;
+const set = stage({ ready: async () => ({ page, problems } = set) });
+const { test } = set;
 
 test('the page says that it has lost the server, and shows the last pictures as old ones', async () => {
   await waitUntilReady(page);
   await turnWheel(page, 15);
   await untilReadout(page, 'Depth', (depth) => depth === 12);
-  await server.kill('SIGKILL');
+  await set.server.kill('SIGKILL');
   await page.getByText('Connection lost').waitFor();
   await page.getByText('check whether stylet serve is still running').waitFor();
   assert.match(await page.locator('body').getAttribute('class'), /is-old/);
@@ -34,7 +22,7 @@ test('the page says that it has lost the server, and shows the last pictures as 
 });
 
 test('it goes on when there is a server again', async () => {
-  server = await startServer(folder, { options: SMALL, port: server.port });
+  set.server = await startServer(set.folder, { options: SMALL, port: set.server.port });
   await waitUntilReady(page);
   await page.getByText('You hold the needle').waitFor();
   await untilReadout(page, 'Depth', (depth) => depth === -3);

@@ -1,27 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The colours of the template's holes: clearances at once, and predictions of a needle through each hole on request.
 import assert from 'node:assert/strict';
-import { after, before } from 'node:test';
-import {
-  figure, inOrder, keepPicture, openBrowser, openVisitor, skipWithoutChromium, turnWheel, until, untilReadout, waitUntilReady,
-} from './browser.mjs';
-import { makeFolder, SMALL, startServer } from './server.mjs';
+import { figure, keepPicture, turnWheel, until, untilReadout, waitUntilReady } from './browser.mjs';
+import { stage } from './stage.mjs';
 
-skipWithoutChromium();
-const test = inOrder();
-const { folder, remove } = makeFolder();
-let server, browser, page, problems;
-
-before(async () => {
-  server = await startServer(folder, { options: SMALL });
-  browser = await openBrowser({ webgl: false });
-  ({ page, problems } = await openVisitor(browser, server.url));
-  await waitUntilReady(page);
-});
-after(async () => {
-  await browser?.close();
-  await server?.kill();
-  remove();
+let page, problems;
+const { test } = stage({
+  async ready(set) {
+    ({ page, problems } = set);
+    await waitUntilReady(page);
+  },
 });
 
 const choice = () => page.getByLabel('What the colours of the holes mean');

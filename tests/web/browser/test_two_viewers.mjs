@@ -1,31 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Two viewers of one patient: one holds the needle; the other watches, asks for the needle and gets it.
 import assert from 'node:assert/strict';
-import { after, before } from 'node:test';
 import {
-  inOrder, keepPicture, listenToEvents, openBrowser, openVisitor, readout, skipWithoutChromium, turnWheel, until, untilReadout, waitUntilReady,
+  keepPicture, listenToEvents, openVisitor, readout, turnWheel, until, untilReadout, waitUntilReady,
 } from './browser.mjs';
-import { makeFolder, SMALL, startServer } from './server.mjs';
+import { stage } from './stage.mjs';
 
-skipWithoutChromium();
-const test = inOrder();
-const { folder, remove } = makeFolder();
-let server, browser, first, second;
-
-before(async () => {
-  server = await startServer(folder, { options: SMALL });
-  browser = await openBrowser({ webgl: false });
-  first = await openVisitor(browser, server.url);
-  await waitUntilReady(first.page);
-  await first.page.getByText('You hold the needle').waitFor();
-  second = await openVisitor(browser, server.url);
-  await waitUntilReady(second.page);
+let first, second;
+const set = stage({
+  async ready({ page, problems, browser, server }) {
+    first = { page, problems };
+    await waitUntilReady(first.page);
+    await first.page.getByText('You hold the needle').waitFor();
+    second = await openVisitor(browser, server.url);
+    await waitUntilReady(second.page);
+  },
 });
-after(async () => {
-  await browser?.close();
-  await server?.kill();
-  remove();
-});
+const { test } = set;
 
 test('the second watches', async () => {
   await second.page.getByText('You are watching · 1 other viewer').waitFor();
@@ -60,7 +51,7 @@ test('the second asks, the first hands over', async () => {
 });
 
 test('who comes in the middle gets the whole curve and what has happened', async () => {
-  const third = await openVisitor(browser, server.url);
+  const third = await openVisitor(set.browser, set.server.url);
   await waitUntilReady(third.page);
   await untilReadout(third.page, 'Depth', (depth) => depth === 17);
   assert.deepEqual(third.problems, []);
