@@ -3,7 +3,7 @@
 
 #include "stylet/implant/seed_errors.hpp"
 
-#include <nlohmann/json.hpp>
+#include "io/record/json.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,37 +12,37 @@ namespace stylet::serve {
 
 namespace {
 
-using ImplantJson = nlohmann::ordered_json;
+using record::compact;
+using record::Json;
+using record::or_null;
 
 constexpr double kPerMicrometre = 1e3;  // micrometres in a millimetre: places are written to a micrometre
 
-ImplantJson place_json(const Vec3& x) {
-  ImplantJson list = ImplantJson::array();
+Json place_json(const Vec3& x) {
+  Json list = Json::array();
   for (const double value : x) list.push_back(std::round(kPerMicrometre * value) / kPerMicrometre);
   return list;
 }
 
-ImplantJson number_json(double value) { return std::isfinite(value) ? ImplantJson(value) : ImplantJson(nullptr); }
-
-ImplantJson goals_json(const std::vector<JudgedGoal>& goals) {
-  ImplantJson rows = ImplantJson::array();
+Json goals_json(const std::vector<JudgedGoal>& goals) {
+  Json rows = Json::array();
   for (const JudgedGoal& row : goals) {
     rows.push_back({{"structure", row.goal.structure},
                     {"metric", row.goal.metric},
                     {"at_least", row.goal.at_least},
                     {"bound", row.goal.bound},
-                    {"value", row.value ? number_json(*row.value) : ImplantJson(nullptr)},
+                    {"value", or_null(row.value)},
                     {"met", row.met}});
   }
   return rows;
 }
 
-ImplantJson score_json(const std::optional<ImplantScore>& score) {
+Json score_json(const std::optional<ImplantScore>& score) {
   if (!score) return nullptr;
   return {{"seeds", score->seeds},
-          {"d90_Gy", number_json(score->d90_Gy)},
-          {"d90_percent", number_json(score->d90_percent)},
-          {"v100_percent", number_json(score->v100_percent)},
+          {"d90_Gy", score->d90_Gy},
+          {"d90_percent", score->d90_percent},
+          {"v100_percent", score->v100_percent},
           {"took_ms", score->took_ms},
           {"goals", goals_json(score->goals)}};
 }
@@ -50,8 +50,8 @@ ImplantJson score_json(const std::optional<ImplantScore>& score) {
 /// The causes of a dropped seed. Where the hand held the needle stands in for the aim.
 const char* word_of(SeedCause cause) { return cause == SeedCause::aim ? "hand" : to_string(cause); }
 
-ImplantJson seed_row(const SeedHistory& seed) {
-  ImplantJson why;
+Json seed_row(const SeedHistory& seed) {
+  Json why;
   for (const SeedCauseWords& words : kSeedCauses)
     if (words.of_drop != nullptr) why[word_of(words.cause)] = place_json(seed.by(words.cause));
   return {{"number", seed.number},
@@ -66,9 +66,9 @@ ImplantJson seed_row(const SeedHistory& seed) {
           {"why", why}};
 }
 
-ImplantJson error_json(std::span<const SeedHistory> seeds) {
+Json error_json(std::span<const SeedHistory> seeds) {
   const SeedErrors errors = seed_errors(seeds);
-  ImplantJson axes = ImplantJson::array();
+  Json axes = Json::array();
   for (const SeedErrors::Axis& axis : errors.axes) axes.push_back({{"mean", axis.mean_mm}, {"sd", axis.sd_mm}});
   return {{"seeds", errors.seeds},
           {"mean_mm", errors.mean_mm},
@@ -78,27 +78,23 @@ ImplantJson error_json(std::span<const SeedHistory> seeds) {
 }
 
 /// The causes that have moved a seed.
-ImplantJson causes_json(std::span<const SeedHistory> seeds) {
-  ImplantJson rows = ImplantJson::array();
+Json causes_json(std::span<const SeedHistory> seeds) {
+  Json rows = Json::array();
   for (const CauseOfErrors& of : causes_of_errors(seeds)) {
     if (words_of(of.cause).of_drop == nullptr || of.mean_mm == 0.0) continue;
     rows.push_back({{"cause", word_of(of.cause)},
                     {"meaning", words_of(of.cause).of_drop},
-                    {"mean_mm", number_json(of.mean_mm)},
+                    {"mean_mm", of.mean_mm},
                     {"mean_xyz_mm", place_json(of.mean_vector_mm)}});
   }
   return rows;
-}
-
-std::string text_of_implant(const ImplantJson& json) {
-  return json.dump(-1, ' ', false, ImplantJson::error_handler_t::replace);
 }
 
 }  // namespace
 
 std::string plan_text(const ShownPlan& shown) {
   const RecordedPlan& plan = shown.plan;
-  ImplantJson needles = ImplantJson::array();
+  Json needles = Json::array();
   for (std::size_t k = 0; k < plan.needles.size(); ++k) {
     const RecordedPlan::Needle& needle = plan.needles[k];
     needles.push_back({{"name", needle.name},
@@ -107,7 +103,7 @@ std::string plan_text(const ShownPlan& shown) {
                        {"direction", place_json(needle.direction)},
                        {"depth_mm", needle.depth_mm},
                        {"ready", k < shown.ready.size() && shown.ready[k]},
-                       {"seeds", ImplantJson::array()}});
+                       {"seeds", Json::array()}});
   }
   for (const RecordedPlan::Seed& seed : plan.seeds) {
     needles[seed.needle]["seeds"].push_back({{"number", seed.number},
@@ -115,34 +111,34 @@ std::string plan_text(const ShownPlan& shown) {
                                              {"axis", place_json(seed.axis)},
                                              {"drop_depth_mm", seed.drop_depth_mm}});
   }
-  return text_of_implant({{"needles", needles},
-                          {"current", plan.current},
-                          {"seed_length_mm", plan.seed_length_mm},
-                          {"seed_diameter_mm", plan.seed_diameter_mm},
-                          {"prescription_Gy", plan.prescription_Gy},
-                          {"source", plan.source},
-                          {"technique", shown.technique == SeedTechnique::preloaded ? "preloaded" : "pushed"}});
+  return compact({{"needles", needles},
+                  {"current", plan.current},
+                  {"seed_length_mm", plan.seed_length_mm},
+                  {"seed_diameter_mm", plan.seed_diameter_mm},
+                  {"prescription_Gy", plan.prescription_Gy},
+                  {"source", plan.source},
+                  {"technique", shown.technique == SeedTechnique::preloaded ? "preloaded" : "pushed"}});
 }
 
 std::string implant_text(const LiveImplant& implant) {
-  ImplantJson seeds = ImplantJson::array();
+  Json seeds = Json::array();
   for (const SeedHistory& seed : implant.seeds) seeds.push_back(seed_row(seed));
-  return text_of_implant(
+  return compact(
       {{"planned_seeds", implant.planned_seeds},
        {"seeds", seeds},
-       {"train_from_mm", implant.train_from_mm ? ImplantJson(*implant.train_from_mm) : ImplantJson(nullptr)},
+       {"train_from_mm", or_null(implant.train_from_mm)},
        {"computing", implant.is_computing},
        {"now", score_json(implant.now)},
        {"planned", score_json(implant.planned)},
        {"error", error_json(implant.seeds)},
        {"lost", std::count_if(implant.seeds.begin(), implant.seeds.end(), [](const auto& s) { return s.lost; })},
-       {"why", implant.seeds.empty() ? ImplantJson::array() : causes_json(implant.seeds)}});
+       {"why", implant.seeds.empty() ? Json::array() : causes_json(implant.seeds)}});
 }
 
 std::string seeds_text(const LiveSeeds& seeds) {
-  ImplantJson places = ImplantJson::array();
+  Json places = Json::array();
   for (const Vec3& x : seeds.now_mm) places.push_back(place_json(x));
-  return text_of_implant({{"now_mm", places}});
+  return compact({{"now_mm", places}});
 }
 
 }  // namespace stylet::serve

@@ -4,7 +4,7 @@
 #include "implant_text.hpp"
 #include "stylet/io/hole_map_io.hpp"
 
-#include <nlohmann/json.hpp>
+#include "io/record/json.hpp"
 
 #include <array>
 
@@ -12,7 +12,8 @@ namespace stylet::serve {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using record::compact;
+using record::Json;
 
 constexpr std::array kStates{"loading", "ready", "failed"};
 
@@ -22,9 +23,7 @@ Parcel packed(wire::Kind kind, wire::Bytes bytes) {
 
 Parcel json_parcel(wire::Kind kind, const std::string& text) { return packed(kind, wire::encode(kind, text, 0)); }
 
-Parcel json_parcel(wire::Kind kind, const Json& json) {
-  return json_parcel(kind, json.dump(-1, ' ', false, Json::error_handler_t::replace));
-}
+Parcel json_parcel(wire::Kind kind, const Json& json) { return json_parcel(kind, compact(json)); }
 
 Parcel parcel_of(const std::shared_ptr<const Scene>& scene) {
   return packed(wire::Kind::scene, wire::encode(*scene, 0));

@@ -9,8 +9,9 @@
 #include "stylet/sim/harms.hpp"
 #include "wire.hpp"
 
+#include "io/record/json.hpp"
+
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -24,7 +25,8 @@ namespace stylet::serve {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using record::compact;
+using record::Json;
 
 constexpr double kMm3PerCc = 1000.0;
 
@@ -180,7 +182,7 @@ MadeScene make_scene(const TetMesh& mesh, const std::vector<int>& targets, const
       {"warnings", warnings},
       {"notice", "Not a medical device. For research and training; not for planning or treating patients."}};
   // Names come from files of many kinds, so bytes that are not UTF-8 are replaced, not refused.
-  scene->text = text.dump(-1, ' ', false, Json::error_handler_t::replace);
+  scene->text = compact(text);
   return {scene, {std::move(surfaces.nodes), std::move(surfaces.fines)}};
 }
 

@@ -3,6 +3,7 @@
 
 #include "../console.hpp"
 
+#include "stylet/core/need.hpp"
 #include "stylet/measure/scale_bench.hpp"
 
 #include <string>
