@@ -113,7 +113,6 @@ struct Insertion::Parts {
 
   InsertionTissue mesh;
   CouplingSettings settings;
-  PhaseObserver* phases = nullptr;
   TissueResponse tissue;
   ComplianceSupply supply;
   std::vector<std::unique_ptr<NeedleInTissue>> needles;
@@ -170,7 +169,6 @@ void Insertion::Parts::make_balance() {
                            .path = held->path,
                            .hand = held->hand,
                            .predictor = *predictor,
-                           .phases = phases,
                            .most_contacts = static_cast<int>(held->shaft.others()) + settings.capacity};
   if (settings.solver == CouplingSettings::Solver::staggered) {
     balance = std::make_unique<paper::StaggeredBalance>(parts);
@@ -336,10 +334,7 @@ bool Insertion::Parts::find_balance(double h, bool may_give_up, Step& step) {
   }
   const double cut = tip.touches() ? tip.cut.advance() : 0.0;
   tip.cut_mm_per_s = cut / h;
-  {
-    const InPhase in_phase(phases, StepPhase::tip);
-    held->path.commit(step);
-  }
+  held->path.commit(step);
   held->damping.end(found);
   step.flags |= flags_before;
   predictor->end(cut, steady, needles_in_balance(), tip, held->shaft.all());
@@ -354,11 +349,8 @@ bool Insertion::Parts::move_on(const Pose& from, const Pose& to, double h, bool 
   balance->base_moved(predictor->last_motion());
   if (!find_balance(h, may_give_up, step)) return false;
   ContactStates::stick_where_slow(held->shaft.all(), h, settings.zero_band_mm_per_s);
-  {
-    const InPhase in_phase(phases, StepPhase::contacts);
-    held->shaft.wake_and_drop(held->path.tracks.now, held->path.marks, held->path.tip.force, step);
-    share_length();
-  }
+  held->shaft.wake_and_drop(held->path.tracks.now, held->path.marks, held->path.tip.force, step);
+  share_length();
   held->path.pass_open_end(forces(), step);
   tissue.end(forces(), held->path.tracks.now);
   return true;
@@ -512,7 +504,6 @@ ComplianceSupply& Insertion::supply() { return parts_->supply; }
 const Needle& Insertion::needle() const { return *parts_->held->needle; }
 const ContactCompliance& Insertion::compliance() const { return std::as_const(parts_->tissue).compliance(); }
 const CouplingSettings& Insertion::settings() const { return parts_->settings; }
-void Insertion::observe_phases(PhaseObserver* observer) { parts_->phases = observer; }
 const CapacityUses& Insertion::capacities() const { return parts_->room.uses(); }
 const Track& Insertion::track() const { return parts_->held->path.tracks.now; }
 std::span<const Track> Insertion::old_tracks() const { return parts_->held->path.tracks.earlier(); }

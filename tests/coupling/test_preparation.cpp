@@ -8,10 +8,12 @@ namespace {
 using test::BlockOptions;
 using test::NeedleInBlock;
 
-/// A needle that makes each tangent in one piece.
-class UnpreparedNeedle final : public Needle {
+/// A needle that counts the pieces of tangents that it makes.
+class CountedNeedle final : public Needle {
  public:
-  explicit UnpreparedNeedle(std::unique_ptr<Needle> inner) : inner_(std::move(inner)) {}
+  /// @param prepares false: each tangent is made in one piece
+  CountedNeedle(std::unique_ptr<Needle> inner, bool prepares, int& pieces)
+      : inner_(std::move(inner)), prepares_(prepares), pieces_(pieces) {}
   [[nodiscard]] double length() const override { return inner_->length(); }
   [[nodiscard]] std::string model() const override { return inner_->model(); }
   void set_base(const Pose& base) override { inner_->set_base(base); }
@@ -21,12 +23,23 @@ class UnpreparedNeedle final : public Needle {
   [[nodiscard]] AxisPlace place(double s) const override { return inner_->place(s); }
   bool linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
                  std::span<const Mat3> springs, Indefinite otherwise) override {
+    ++pieces_;
     return inner_->linearise(loads, compliance, free, springs, otherwise);
   }
   bool relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free) override { return inner_->relax(loads, free); }
   bool append(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance) override {
     return inner_->append(loads, compliance);
   }
+  [[nodiscard]] bool prepares() const override { return prepares_; }
+  bool prepare(std::span<const PointLoad> loads, std::span<const Mat3> springs, Indefinite otherwise) override {
+    ++pieces_;
+    return inner_->prepare(loads, springs, otherwise);
+  }
+  bool prepared_compliance(Eigen::Ref<MatX> compliance) override {
+    ++pieces_;
+    return inner_->prepared_compliance(compliance);
+  }
+  void take_prepared() override { inner_->take_prepared(); }
   void advance(std::span<const PointLoad> loads) override { inner_->advance(loads); }
   [[nodiscard]] double residual(std::span<const PointLoad> loads) override { return inner_->residual(loads); }
   void damp(double ratio) override { inner_->damp(ratio); }
@@ -37,16 +50,8 @@ class UnpreparedNeedle final : public Needle {
 
  private:
   std::unique_ptr<Needle> inner_;
-};
-
-/// Counts the pieces of tangents made in a step.
-class Pieces final : public PhaseObserver {
- public:
-  void enter(StepPhase phase) noexcept override {
-    if (phase == StepPhase::needle_tangent) ++tangents;
-  }
-  void leave() noexcept override {}
-  int tangents = 0;
+  bool prepares_;
+  int& pieces_;
 };
 
 struct Driven {
@@ -60,25 +65,23 @@ struct Driven {
 /// In and out at two places, each with a back-and-forth motion; the second insertion begins before the needle
 /// is all out of the first.
 Driven drive(bool prepares) {
+  int pieces = 0;
   BlockOptions options;
-  if (!prepares) {
-    options.needle = [](int capacity) -> std::unique_ptr<Needle> {
-      return std::make_unique<UnpreparedNeedle>(BeamNeedle::build({150.0, 1.27, 15700, 12100}, 20, capacity).value());
-    };
-  }
+  options.needle = [&](int capacity) -> std::unique_ptr<Needle> {
+    auto beam = BeamNeedle::build({150.0, 1.27, 15700, 12100}, 20, capacity).value();
+    return std::make_unique<CountedNeedle>(std::move(beam), prepares, pieces);
+  };
   NeedleInBlock run(options);
-  Pieces pieces;
-  run.insertion->observe_phases(&pieces);
   Driven result;
   const auto go = [&](double to, int* iterations = nullptr) {
     const double way = to > run.depth ? 0.02 : -0.02;
     for (long k = std::lround((to - run.depth) / way); k > 0; --k) {
       run.depth += way;
-      pieces.tangents = 0;
+      pieces = 0;
       run.step(1e-3);
       if (iterations != nullptr) *iterations += run.report.iterations;
-      if (pieces.tangents > 0) ++result.steps_with_tangents;
-      result.most_tangents = std::max(result.most_tangents, pieces.tangents);
+      if (pieces > 0) ++result.steps_with_tangents;
+      result.most_tangents = std::max(result.most_tangents, pieces);
     }
   };
   for (const Vec3& through : {Vec3(1.3, 0.7, 0.0), Vec3(-3.2, 2.1, 0.0)}) {

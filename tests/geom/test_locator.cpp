@@ -25,6 +25,13 @@ TetMesh rough_ball() {
   return mesh;
 }
 
+// A box of two regions that meet at x = 20.
+TetMesh near_and_far() {
+  TetMesh mesh = box_mesh({0, 0, 0}, {40, 40, 40}, {8, 8, 8});
+  assign_regions(mesh, {"near", "far"}, [](const Vec3& x) { return x.x() < 20 ? 0 : 1; });
+  return mesh;
+}
+
 // An L-shaped body: a box without its upper right quarter, so that straight paths leave and re-enter it.
 TetMesh bracket() {
   TetMesh mesh = box_mesh({0, 0, 0}, {40, 20, 40}, {8, 4, 8});
@@ -128,9 +135,7 @@ TEST(Locator, finds_nothing_outside_a_concave_mesh_and_everything_inside) {
 }
 
 TEST(Locator, ties_are_broken_by_the_direction_of_travel) {
-  TetMesh mesh = box_mesh({0, 0, 0}, {40, 40, 40}, {8, 8, 8});
-  assign_regions(mesh, {"near", "far"}, [](const Vec3& x) { return x.x() < 20 ? 0 : 1; });
-  const Body body(std::move(mesh));
+  const Body body(near_and_far());
   Random random;
   for (int i = 0; i < 3000; ++i) {
     // A point on the interface: on a face, on an edge of the grid, or on a node.
@@ -184,9 +189,7 @@ TEST(Locator, first_crossing_agrees_with_brute_force) {
 
 TEST(Locator, paths_through_edges_and_nodes_stop_where_the_region_changes) {
   // Without jitter, paths between grid nodes run along edges, through nodes and inside faces all the way.
-  TetMesh mesh = box_mesh({0, 0, 0}, {40, 40, 40}, {8, 8, 8});
-  assign_regions(mesh, {"near", "far"}, [](const Vec3& x) { return x.x() < 20 ? 0 : 1; });
-  const Body body(std::move(mesh));
+  const Body body(near_and_far());
   Random random;
   for (int i = 0; i < 5000; ++i) {
     const auto grid = [&](int lo, int hi) { return 5.0 * (lo + random.below(hi - lo + 1)); };
@@ -216,9 +219,7 @@ TEST(Locator, paths_through_edges_and_nodes_stop_where_the_region_changes) {
 }
 
 TEST(Locator, a_path_that_starts_on_an_interface_follows_its_direction) {
-  TetMesh mesh = box_mesh({0, 0, 0}, {40, 40, 40}, {8, 8, 8});
-  assign_regions(mesh, {"near", "far"}, [](const Vec3& x) { return x.x() < 20 ? 0 : 1; });
-  const Body body(std::move(mesh));
+  const Body body(near_and_far());
   const Vec3 from(20, 12, 13);
   const Vec3 ahead(33, 14, 17);
   const Vec3 back(3, 14, 17);

@@ -12,6 +12,7 @@ namespace {
 
 using beam::BeamShape;
 using beam::BeamTangent;
+using beam::ElementKind;
 using beam::RotationTerms;
 using test::kShort;
 using test::tilted;
@@ -23,8 +24,8 @@ std::vector<PointLoad> assorted_loads() {
 }
 
 /// A shape curved in 3D whose elements rotate by up to the given angle [rad].
-BeamShape curved(int elements, double angle) {
-  BeamShape shape(elements, kShort, 15700.0, 12100.0);
+BeamShape curved(int elements, double angle, ElementKind kind = ElementKind::arc) {
+  BeamShape shape(elements, kShort, 15700.0, 12100.0, kind);
   for (Eigen::Index i = 0; i < shape.curvature.size(); ++i) {
     shape.curvature[i] = angle / shape.element_length() * std::sin(1.7 * static_cast<double>(i) + 0.4) / std::sqrt(3.0);
   }
@@ -34,7 +35,7 @@ BeamShape curved(int elements, double angle) {
 
 double potential(const BeamShape& shape, const Mat3& base, const std::vector<PointLoad>& loads) {
   double value = shape.energy();
-  for (const PointLoad& load : loads) value -= load.force.dot(base * shape.point(shape.locate(load.s)));
+  for (const PointLoad& load : loads) value -= load.force.dot(base * shape.point(load.s));
   return value;
 }
 
@@ -96,10 +97,13 @@ TEST(RotationTerms, agree_with_the_angle_axis_formula_and_its_mean) {
   }
 }
 
-TEST(BeamDerivatives, gradient_is_the_derivative_of_the_potential_energy) {
+/// Derivatives of arcs, which a beam consists of, and of rods.
+class BeamDerivatives : public testing::TestWithParam<ElementKind> {};
+
+TEST_P(BeamDerivatives, gradient_is_the_derivative_of_the_potential_energy) {
   const auto loads = assorted_loads();
   for (const double angle : {0.0, 1e-6, 0.05, 0.3, 1.0, 2.4}) {
-    const BeamShape shape = curved(8, angle);
+    const BeamShape shape = curved(8, angle, GetParam());
     const VecX exact = gradient(shape, tilted(), loads);
     for (Eigen::Index i = 0; i < exact.size(); ++i) {
       const double numeric =
@@ -109,10 +113,10 @@ TEST(BeamDerivatives, gradient_is_the_derivative_of_the_potential_energy) {
   }
 }
 
-TEST(BeamDerivatives, hessian_is_the_derivative_of_the_gradient_and_symmetric) {
+TEST_P(BeamDerivatives, hessian_is_the_derivative_of_the_gradient_and_symmetric) {
   const auto loads = assorted_loads();
   for (const double angle : {0.0, 1e-6, 0.05, 0.3, 1.0, 2.4}) {
-    const BeamShape shape = curved(8, angle);
+    const BeamShape shape = curved(8, angle, GetParam());
     BeamTangent tangent(shape, 8);
     tangent.assemble(shape, tilted(), loads);
     const MatX exact = tangent.hessian();
@@ -123,9 +127,9 @@ TEST(BeamDerivatives, hessian_is_the_derivative_of_the_gradient_and_symmetric) {
   }
 }
 
-TEST(BeamDerivatives, residual_is_the_largest_element_gradient_per_unit_length) {
+TEST_P(BeamDerivatives, residual_is_the_largest_element_gradient_per_unit_length) {
   const auto loads = assorted_loads();
-  const BeamShape shape = curved(8, 0.3);
+  const BeamShape shape = curved(8, 0.3, GetParam());
   const VecX g = gradient(shape, tilted(), loads);
   double largest = 0.0;
   for (int e = 0; e < 8; ++e) largest = std::max(largest, g.segment<3>(3 * e).norm() / shape.element_length());
@@ -133,10 +137,10 @@ TEST(BeamDerivatives, residual_is_the_largest_element_gradient_per_unit_length) 
   EXPECT_NEAR(tangent.largest_imbalance(shape, tilted(), loads), largest, 1e-11 * largest);
 }
 
-TEST(BeamTangent, compliances_and_steps_equal_the_dense_formulae) {
+TEST_P(BeamDerivatives, compliances_and_steps_equal_the_dense_formulae) {
   const auto loads = assorted_loads();
   for (const int elements : {5, 8, 24, 40}) {
-    BeamShape shape = curved(elements, 0.1);
+    BeamShape shape = curved(elements, 0.1, GetParam());
     BeamTangent tangent(shape, 8);
     const Mat3 base = tilted();
     tangent.assemble(shape, base, loads);
@@ -150,7 +154,7 @@ TEST(BeamTangent, compliances_and_steps_equal_the_dense_formulae) {
       J.col(i) = difference(shape, i, 1e-4, [&](const BeamShape& s) {
         VecX points(size);
         for (std::size_t c = 0; c < loads.size(); ++c) {
-          points.segment<3>(3 * static_cast<Eigen::Index>(c)) = base * s.point(s.locate(loads[c].s));
+          points.segment<3>(3 * static_cast<Eigen::Index>(c)) = base * s.point(loads[c].s);
         }
         return points;
       });
@@ -198,6 +202,9 @@ TEST(BeamTangent, stays_positive_definite_far_beyond_buckling) {
     EXPECT_LT(g.dot(shape.curvature - before), 0.0);
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Of, BeamDerivatives, testing::Values(ElementKind::arc, ElementKind::rod),
+                         [](const auto& kind) { return kind.param == ElementKind::arc ? "arcs" : "rods"; });
 
 }  // namespace
 }  // namespace stylet

@@ -70,7 +70,11 @@ TEST_P(NeedleTheory, follows_the_elastica_to_sixty_degrees_within_one_percent) {
   const auto needle = make();
   for (const double degrees : {5.0, 20.0, 40.0, 60.0}) {
     const Elastica exact(degrees * kDegree, kLength, kEI);
-    test::settle(*needle, std::vector<PointLoad>{{kLength, {exact.force, 0, 0}}}, 1e-7);
+    needle->straighten();
+    const int iterations = test::settle(*needle, std::vector<PointLoad>{{kLength, {exact.force, 0, 0}}}, 1e-7);
+    if (model() == "beam") {
+      EXPECT_LE(iterations, 12) << degrees;
+    }
     const Vec3 tip = needle->point(kLength);
     EXPECT_NEAR(tip.x(), exact.deflection, 0.01 * exact.deflection) << degrees;
     EXPECT_NEAR(kLength - tip.z(), kLength - exact.reach, 0.01 * (kLength - exact.reach)) << degrees;

@@ -9,7 +9,6 @@
 #include "stylet/coupling/laws.hpp"
 #include "stylet/coupling/near_field/mesh_kernel.hpp"
 #include "stylet/coupling/step.hpp"
-#include "stylet/coupling/step_phases.hpp"
 #include "stylet/coupling/track.hpp"
 #include "stylet/fem/compliance_store.hpp"
 #include "stylet/fem/spread_compliance.hpp"
@@ -158,9 +157,6 @@ class Insertion {
 
   /// Elastic energy in the tissue, ½ fᵀ A f [N mm]; for viscous tissue, the stored energy.
   [[nodiscard]] double tissue_energy() const;
-
-  /// Sets the observer of the phases of each step; null, the default, for none. It must outlive the steps.
-  void observe_phases(PhaseObserver* observer);
 
   /// The current track, and the tracks of earlier insertions.
   [[nodiscard]] const Track& track() const;

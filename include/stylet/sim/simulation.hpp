@@ -74,8 +74,6 @@ class Simulation {
   [[nodiscard]] ComplianceSupply& supply() { return insertion_.supply(); }
   /// Radius and distance ahead of the tip for which the worker should compute compliance.
   [[nodiscard]] ComplianceSupply::Settings supply_settings() const;
-  /// See Insertion::observe_phases().
-  void observe_phases(PhaseObserver* observer) { insertion_.observe_phases(observer); }
   [[nodiscard]] double time_s() const { return step_.time_s; }
 
  private:

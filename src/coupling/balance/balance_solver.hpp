@@ -6,7 +6,6 @@
 #include "coupling/balance/predictor.hpp"
 #include "coupling/hand_force.hpp"
 #include "coupling/tip/tip_path.hpp"
-#include "stylet/coupling/step_phases.hpp"
 
 namespace stylet {
 
@@ -17,7 +16,6 @@ struct BalanceParts {
   TipPath& path;          ///< breaks the surfaces whose strength a balance exceeds
   const HandForce& hand;  ///< gives the hand's force at that moment
   Predictor& predictor;   ///< predicts the end of a sub-step
-  PhaseObserver* const& phases;
   int most_contacts = 0;  ///< largest number of shaft contacts of all needles
 };
 

@@ -102,18 +102,14 @@ CoupledBalance::CoupledBalance(const BalanceParts& parts)
       system_(rows_, parts.most_contacts + 1, parts.contacts.first_own() - 1),
       states_(parts_.contacts),
       tissue_(system_, parts.most_contacts + 1),
-      tangent_(parts_.contacts.needle, system_, rows_, parts.most_contacts + 1, parts.phases),
+      tangent_(parts_.contacts.needle, system_, rows_, parts.most_contacts + 1),
       kept_(parts_.contacts.needle.state().size(), parts.most_contacts) {}
 
-void CoupledBalance::march(double advance) {
-  const InPhase in_phase(parts_.phases, StepPhase::tip);
-  parts_.contacts.tip.cut.march(advance);
-}
+void CoupledBalance::march(double advance) { parts_.contacts.tip.cut.march(advance); }
 
 /// Gathers the terms of the linear equations: the tissue's compliance among the contacts, the forces of the contacts,
 /// and the gaps between tissue and needle.
 void CoupledBalance::gather() {
-  const InPhase in_phase(parts_.phases, StepPhase::gather);
   const int count = parts_.contacts.count();
   const auto size = static_cast<Eigen::Index>(3 * count);
   const int same = tissue_.renew(parts_.contacts);
@@ -149,13 +145,9 @@ void CoupledBalance::gather() {
 /// Evaluates all terms at the present iterate. @return the largest error of needle, tissue and laws, over the tolerance
 double CoupledBalance::look(double h) {
   rows_.take_loads(parts_.contacts);
-  {
-    const InPhase in_phase(parts_.phases, StepPhase::gather);
-    rows_.take_places(parts_.contacts);
-    rows_.soften(parts_.contacts, h, foresees_cut_);
-  }
+  rows_.take_places(parts_.contacts);
+  rows_.soften(parts_.contacts, h, foresees_cut_);
   gather();
-  const InPhase in_phase(parts_.phases, StepPhase::balance);
   const double of_contacts = larger_or_nan(error_of_tip(), error_of(1, parts_.contacts.count()));
   return larger_or_nan(of_contacts, parts_.contacts.needle.residual(rows_.loads()) / moment()) / rows_.allowed();
 }
@@ -230,7 +222,6 @@ void CoupledBalance::change_and_tell(int load, Step& step) {
 /// @param changed set to whether a state has changed
 /// @return false when the matrix is singular
 bool CoupledBalance::pivot(double h, Effort& effort, Step& step, bool& changed) {
-  const InPhase in_phase(parts_.phases, StepPhase::solve);
   changed = false;
   for (int round = 0; round < kMaxPivots; ++round) {
     if (round > 0) {
@@ -241,10 +232,7 @@ bool CoupledBalance::pivot(double h, Effort& effort, Step& step, bool& changed) 
       }
       effort.spend(anew + effort.solution());
     }
-    {
-      const InPhase gathering(parts_.phases, StepPhase::gather);
-      rows_.soften(parts_.contacts, h, foresees_cut_);
-    }
+    rows_.soften(parts_.contacts, h, foresees_cut_);
     // The error of an old matrix may make states alternate.
     if (round == kAllAtOnce && !system_.factorise()) return false;
     if (!system_.solve(tip_rows())) return false;
@@ -295,10 +283,7 @@ void CoupledBalance::take_solution() {
     rows_.loads()[static_cast<std::size_t>(c)].force = -system_.push.segment<3>(3 * c);
     parts_.contacts.force(c).noalias() = rows_.frame[static_cast<std::size_t>(c)] * system_.lambda.segment<3>(3 * c);
   }
-  {
-    const InPhase in_phase(parts_.phases, StepPhase::needle_advance);
-    parts_.contacts.needle.advance(rows_.loads());
-  }
+  parts_.contacts.needle.advance(rows_.loads());
   for (int c = 1; c < parts_.contacts.count(); ++c) slide(c);
 }
 
@@ -330,7 +315,6 @@ bool CoupledBalance::is_astray(double largest_at_start) const {
 
 /// Restores needle and tissue to the start of the sub-step.
 void CoupledBalance::give_way() {
-  const InPhase in_phase(parts_.phases, StepPhase::tip);
   parts_.predictor.go_back(parts_.contacts.needle, parts_.contacts.tip, parts_.contacts.shaft.all());
 }
 
@@ -338,10 +322,7 @@ bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
   TipContact& tip = parts_.contacts.tip;
   Predictor& predictor = parts_.predictor;
   states_.begin(kMaxToggles);
-  {
-    const InPhase in_phase(parts_.phases, StepPhase::tip);
-    tip.begin(parts_.contacts.forces());
-  }
+  tip.begin(parts_.contacts.forces());
   if (const auto points = tangent_.take_prepared(parts_.contacts); !points.empty()) tissue_.take_points(points);
   const double largest_at_start = parts_.contacts.largest_force();
   left_tet_ = -1;
@@ -357,7 +338,6 @@ bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
     double error = look(h);
     const bool found = iteration > 0 && !progress.changed && error < 1.0;
     if (found && tip.breaks_surface()) {
-      const InPhase in_phase(parts_.phases, StepPhase::tip);
       const double hand_N =
           parts_.hand.when_tip_reached(tip.ahead.limit(), tip.history.start, parts_.contacts.own_forces());
       parts_.path.break_surface(hand_N, step);
@@ -399,13 +379,11 @@ bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
       progress.new_tangent = true;
     }
     if (!system_.fits()) {
-      const InPhase in_phase(parts_.phases, StepPhase::factorise);
       effort.spend(effort.matrix());
       system_.factorise();
     }
     if (system_.fits() && (iteration == 0 || !progress.old_matrix || border_tet != tip.cut.at().tet)) {
       border_tet = tip.cut.at().tet;
-      const InPhase in_phase(parts_.phases, StepPhase::solve);
       system_.add_tip();
     }
     if (!system_.fits() || !pivot(h, effort, step, progress.changed)) {
@@ -436,7 +414,6 @@ bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
     if (is_astray(largest_at_start)) {
       give_way();
     } else {
-      const InPhase in_phase(parts_.phases, StepPhase::tip);
       tip.take_back_cut();
     }
   }

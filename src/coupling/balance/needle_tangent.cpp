@@ -23,13 +23,8 @@ constexpr double kWornOut_mm = 2.0;
 constexpr double kOtherDamping = 0.25;
 }  // namespace
 
-NeedleTangent::NeedleTangent(Needle& needle, ContactSystem& system, const ContactRows& rows, int most_contacts,
-                             PhaseObserver* const& phases)
-    : needle_(needle),
-      system_(system),
-      rows_(rows),
-      phases_(phases),
-      springs_(static_cast<std::size_t>(most_contacts), Mat3::Zero()) {
+NeedleTangent::NeedleTangent(Needle& needle, ContactSystem& system, const ContactRows& rows, int most_contacts)
+    : needle_(needle), system_(system), rows_(rows), springs_(static_cast<std::size_t>(most_contacts), Mat3::Zero()) {
   points_.reserve(static_cast<std::size_t>(most_contacts));
 }
 
@@ -53,7 +48,6 @@ void NeedleTangent::release() {
 bool NeedleTangent::expects_springs() { return system_.needle.own_supported && ++on_springs_for_ < kTryWithout; }
 
 void NeedleTangent::linearise(const Contacts& contacts, bool resting_too, bool advances, Effort& effort) {
-  const InPhase in_phase(phases_, StepPhase::needle_tangent);
   const int count = contacts.count();
   NeedleSide& side = system_.needle;
   side.count = count;
@@ -96,13 +90,9 @@ void NeedleTangent::linearise(const Contacts& contacts, bool resting_too, bool a
   worn_mm_ = 0.0;
 }
 
-bool NeedleTangent::relax() {
-  const InPhase in_phase(phases_, StepPhase::needle_relax);
-  return fits_ && needle_.relax(rows_.loads(), system_.needle.motion());
-}
+bool NeedleTangent::relax() { return fits_ && needle_.relax(rows_.loads(), system_.needle.motion()); }
 
 void NeedleTangent::append(int load) {
-  const InPhase in_phase(phases_, StepPhase::factorise);
   const auto loads = rows_.loads().first(static_cast<std::size_t>(load) + 1);
   fits_ = fits_ && needle_.append(loads, system_.needle.next_rows());
   if (!fits_) return;
@@ -180,22 +170,16 @@ void NeedleTangent::prepare(const Contacts& contacts) {
     case Stage::begun:
       if (prepare_on_springs(contacts)) stage_ = Stage::tangent;
       break;
-    case Stage::tangent: {
-      const InPhase in_phase(phases_, StepPhase::needle_tangent);
+    case Stage::tangent:
       if (needle_.prepared_compliance(system_.prepared.compliance())) stage_ = Stage::compliance;
       break;
-    }
-    case Stage::compliance: {
-      const InPhase in_phase(phases_, StepPhase::factorise);
+    case Stage::compliance:
       system_.fill_prepared();
       stage_ = Stage::filled;
       break;
-    }
-    case Stage::filled: {
-      const InPhase in_phase(phases_, StepPhase::factorise);
+    case Stage::filled:
       stage_ = system_.factorise_prepared() ? Stage::matrix : Stage::none;
       break;
-    }
     default:
       break;
   }
@@ -204,7 +188,6 @@ void NeedleTangent::prepare(const Contacts& contacts) {
 /// Begins the next tangent at the present shape, on the expected number of springs. Returns false where it needs more
 /// springs; the next attempt uses them. Needles at rest keep their tangents, and with them their springs.
 bool NeedleTangent::prepare_on_springs(const Contacts& contacts) {
-  const InPhase in_phase(phases_, StepPhase::needle_tangent);
   const int count = contacts.count();
   NeedleSide& side = system_.prepared;
   const NeedleSide& now = system_.needle;

@@ -4,7 +4,6 @@
 #include "coupling/balance/contact_system.hpp"
 #include "coupling/balance/contacts.hpp"
 #include "coupling/balance/effort.hpp"
-#include "stylet/coupling/step_phases.hpp"
 
 #include <vector>
 
@@ -21,8 +20,7 @@ namespace stylet {
 class NeedleTangent {
  public:
   /// All arguments outlive the tangent. @param system its needle's side is written @param rows loads on the needle
-  NeedleTangent(Needle& needle, ContactSystem& system, const ContactRows& rows, int most_contacts,
-                PhaseObserver* const& phases);
+  NeedleTangent(Needle& needle, ContactSystem& system, const ContactRows& rows, int most_contacts);
 
   /// Whether the tangent belongs to the present contacts.
   [[nodiscard]] bool fits() const { return fits_; }
@@ -71,7 +69,6 @@ class NeedleTangent {
   Needle& needle_;
   ContactSystem& system_;
   const ContactRows& rows_;
-  PhaseObserver* const& phases_;
   bool fits_ = false;
   int on_springs_for_ = 0;        ///< tangents with springs since a tangent without was tried
   double damping_ = 0.0;          ///< Needle::damp() ratio of this sub-step

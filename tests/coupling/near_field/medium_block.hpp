@@ -23,4 +23,21 @@ struct NeedleLine : validate::NeedleLine {
       : validate::NeedleLine(build(block, {.spacing_mm = spacing_mm, .direction = along, .unbounded = unbounded})) {}
 };
 
+/// Fat between muscle and gland, as thick as a few needle diameters and often one element thick; all nodes of its
+/// elements are on one of the two interfaces.
+struct ThinLayer : MediumBlock {
+  static constexpr double kThickness = 6.0;
+  explicit ThinLayer(int cells, const std::vector<NeedleWay>& ways = {})
+      : MediumBlock({.cells = cells,
+                     .jitter = 0.0,
+                     .regions = {"muscle", "fat", "gland"},
+                     .region_at = [](const Vec3& x) { return x.z() < 0.0          ? 0
+                                                             : x.z() < kThickness ? 1
+                                                                                  : 2; },
+                     .materials = {{0.025, 0.45}, {0.002, 0.45}, {0.03, 0.45}},
+                     .faces_at_z = {0.0, kThickness},
+                     .element = ways.empty() ? Element::p1 : Element::nodal_pressure,
+                     .ways = ways}) {}
+};
+
 }  // namespace stylet::test

@@ -5,7 +5,6 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <iostream>
 #include <random>
 #include <tuple>
 
@@ -128,115 +127,15 @@ TEST_P(NeedleOnItsWay, needs_the_force_of_a_bonded_rigid_cylinder) {
 INSTANTIATE_TEST_SUITE_P(MeshesAndMedia, NeedleOnItsWay,
                          testing::Combine(testing::ValuesIn(test::meshes({7, 10, 14})), testing::Values(0.3, 0.45)));
 
-TEST(TipOnItsWay, gives_way_like_a_flat_punch_on_the_skin_and_as_mindlin_says_below_it) {
-  for (const int cells : {7, 12}) {
-    MediumBlock block({.cells = cells, .skin = true, .ways = {{{1.3, 0.7, -50.0}, Vec3::UnitZ(), 60.0}}});
-    const NeedleKernel needle;
-    const double punch = (1.0 - 0.45 * 0.45) / (2.0 * needle.radius_mm * 0.01);
-    for (const double depth : {0.0, 1.0, 2.0, 4.0, 7.0, 10.0, 20.0}) {
-      const Vec3 x(1.3, 0.7, depth - 50.0);
-      std::vector<Mat3> field;
-      for (const Index node : block.fixed) {
-        const Vec3 y = block.tissue->node_position(node);
-        field.emplace_back(kelvinlet(y - x, 1e-6, block.medium) +
-                           free_surface_image(y - x, {Vec3::UnitZ(), y.z() + 50.0, depth}, 1e-6, block.medium));
-      }
-      const Mat3 ours = block.tip(needle, x) + block.lift(x, field);
-      if (depth == 0.0) {
-        EXPECT_NEAR(ours(2, 2) / punch, 1.0, 0.03) << cells << " cells";
-        continue;
-      }
-      const double epsilon = needle.own_tip_epsilon({depth, Vec3::UnitZ(), 1.0}, {}, block.medium.poisson);
-      const Mat3 expected = kelvinlet(Vec3::Zero(), epsilon, block.medium) +
-                            free_surface_image(Vec3::Zero(), {Vec3::UnitZ(), depth, depth}, epsilon, block.medium);
-      EXPECT_LT((ours - expected).norm(), 0.03 * expected.norm()) << cells << " cells, " << depth << " mm";
-    }
-  }
-}
-
-struct RodEnd {
-  double above;
-  double stiffness;
-};
-constexpr RodEnd kBetweenFatAndGland[] = {
-#include "rod_end.inc"
-};
-
-TEST(TipOnItsWay, gives_way_between_two_tissues_as_finite_elements_around_a_rod_say) {
-  for (const int cells : {6, 8, 14}) {
-    MediumBlock block({.cells = cells,
-                       .jitter = 0.0,
-                       .regions = {"fat", "gland"},
-                       .region_at = [](const Vec3& x) { return x.z() < 0.0 ? 0 : 1; },
-                       .materials = {{0.002, 0.45}, {0.03, 0.45}},
-                       .ways = {kThrough}});
-    for (const RodEnd& end : kBetweenFatAndGland) {
-      for (const double side : {-1e-6, 1e-6}) {
-        const double product = block.tip({}, {1.3, 0.7, side - end.above})(2, 2) * end.stiffness;
-        EXPECT_NEAR(product, 1.0, 0.15) << cells << " cells, " << end.above << " mm above";
-        if (side > 0.0) std::cout << cells << " cells, " << end.above << " mm above: " << product << '\n';
-      }
-    }
-  }
-}
-
-/// Fat of 6 mm between muscle and gland; all nodes of its elements are on one of the two interfaces.
-MediumBlock thin_layer(int cells) {
-  return MediumBlock({.cells = cells,
-                      .jitter = 0.0,
-                      .regions = {"muscle", "fat", "gland"},
-                      .region_at = [](const Vec3& x) { return x.z() < 0.0   ? 0
-                                                              : x.z() < 6.0 ? 1
-                                                                            : 2; },
-                      .materials = {{0.025, 0.45}, {0.002, 0.45}, {0.03, 0.45}},
-                      .faces_at_z = {0.0, 6.0},
-                      .element = Element::nodal_pressure,
-                      .ways = {kThrough}});
-}
-
 TEST(SpreadCompliance, through_a_thin_layer_hardly_depends_on_the_mesh) {
   if (test::kSanitized) GTEST_SKIP() << test::kTooLongSanitized;
-  const MediumBlock coarse = thin_layer(12), fine = thin_layer(18);
+  const test::ThinLayer coarse(12, {kThrough}), fine(18, {kThrough});
   for (double z = -12.0; z <= 18.0; z += 1.5) {
     const Vec3 x(1.3, 0.7, z);
     const auto F = [&](const MediumBlock& block) -> Mat3 {
       return (*block.spread)(block.spread->place(x), block.spread->place(x));
     };
     EXPECT_LT((F(coarse) - F(fine)).norm(), 0.1 * F(fine).norm()) << z;
-  }
-}
-
-TEST(NeedleThroughAThinLayer, and_its_narrow_part_have_a_positive_compliance_on_any_mesh) {
-  std::mt19937 random(11);
-  std::uniform_real_distribution<double> aside(-3.0, 3.0);
-  for (const int cells : {8, 12}) {
-    MediumBlock block = thin_layer(cells);
-    for (const double spacing : {1.6, 2.5, 4.0}) {
-      const bool upwards = spacing == 2.5;
-      const Vec3 axis = Vec3(0.1 * aside(random), 0.1 * aside(random), upwards ? 1.0 : -1.0).normalized();
-      const Vec3 start(aside(random), aside(random), upwards ? -12.0 : 18.0);
-      std::vector<Vec3> line;
-      for (double way = 0.0; way < 30.0; way += 0.25 * spacing) line.emplace_back(start + way * axis);
-      block.prepare(line);
-      // With creep, so that the wide part is computed as well.
-      NearFieldCompliance A(std::make_unique<TrackCompliance>(block.store, *block.locator, 40), block.tissue,
-                            block.kernel, {.segment_mm = spacing}, 40, {}, true, block.spread);
-      for (std::size_t k = 0; k < line.size(); ++k) {
-        const MaterialPoint at = block.at(line[k]);
-        ASSERT_TRUE(A.move_tip(at, line[k]));
-        A.begin_sub_step();
-        ASSERT_TRUE(A.move_tip(at, line[k]));
-        if (k % 4 == 0) {
-          ASSERT_GT(A.add(at, line[k], Placement::embedded, axis).point, 0);
-        }
-        const Eigen::Index size = 3 * Eigen::Index{A.points()};
-        const MatX whole = A.matrix().topLeftCorner(size, size);
-        const MatX wide = A.wide().topLeftCorner(size, size);
-        EXPECT_GT(Eigen::SelfAdjointEigenSolver<MatX>(whole).eigenvalues()[0], 0.0) << cells << ", " << line[k].z();
-        EXPECT_GT(Eigen::SelfAdjointEigenSolver<MatX>(whole - wide).eigenvalues()[0], 0.0)
-            << cells << ", " << line[k].z();
-      }
-    }
   }
 }
 

@@ -64,24 +64,6 @@ TEST(Contacts, are_numbered_from_the_tip) {
   EXPECT_EQ(needle.contacts.arc(1), 0.0);
 }
 
-TEST(ContactStates, a_sticking_contact_slides_the_way_it_is_pushed_beyond_its_limit) {
-  NeedleInTissue needle;
-  ContactStates states(needle.contacts);
-  states.begin(6);
-  Step report;
-  ShaftContact& contact = needle.contact(2);
-  const double limit = contact.law.static_N_per_mm * contact.length;
-  for (const double sign : {1.0, -1.0}) {
-    contact.state = State::stick;
-    EXPECT_LT(states.contradiction(2, {.axial = 0.99 * sign * limit}), 0.0);
-    const ContactStates::Trial beyond{.axial = 1.01 * sign * limit};
-    EXPECT_NEAR(states.contradiction(2, beyond), 0.01 * limit, 1e-12);
-    states.change(2, beyond, report);
-    EXPECT_EQ(contact.state, sign > 0.0 ? State::forward : State::backward);
-  }
-  EXPECT_EQ(report.pivots, 2);
-}
-
 TEST(ContactStates, a_sliding_contact_that_turns_round_is_held_where_it_was) {
   NeedleInTissue needle;
   ContactStates states(needle.contacts);
@@ -99,39 +81,6 @@ TEST(ContactStates, a_sliding_contact_that_turns_round_is_held_where_it_was) {
   EXPECT_EQ(contact.s, contact.s_start);
 }
 
-TEST(ContactStates, friction_stops_growing_beyond_its_speed_and_grows_again_below) {
-  NeedleInTissue needle;
-  ContactStates states(needle.contacts);
-  states.begin(6);
-  Step report;
-  ShaftContact& contact = needle.contact(2);
-  contact.state = State::forward;
-  contact.reach = 0.1;
-  EXPECT_GT(states.contradiction(2, {.slides = 0.2}), 0.0);
-  states.change(2, {.slides = 0.2}, report);
-  EXPECT_TRUE(contact.fast);
-  EXPECT_EQ(states.contradiction(2, {.slides = 0.2}), 0.0);
-  EXPECT_GT(states.contradiction(2, {.slides = 0.05}), 0.0);
-  states.change(2, {.slides = 0.05}, report);
-  EXPECT_FALSE(contact.fast);
-  EXPECT_EQ(contact.state, State::forward);
-}
-
-TEST(ContactStates, a_contact_that_hardly_slid_sticks_whichever_way_it_went) {
-  const double h = 1e-3, zero_band = 0.005;
-  std::array<ShaftContact, 4> contacts;
-  const std::array<double, 4> slid{0.9 * zero_band * h, -0.9 * zero_band * h, 1.1 * zero_band * h,
-                                   -1.1 * zero_band * h};
-  for (std::size_t c = 0; c < contacts.size(); ++c) {
-    contacts[c].state = slid[c] > 0.0 ? ShaftContact::State::forward : ShaftContact::State::backward;
-    contacts[c].slid = slid[c];
-  }
-  ContactStates::stick_where_slow(contacts, h, zero_band);
-  EXPECT_TRUE(contacts[0].sticks() && contacts[1].sticks());
-  EXPECT_EQ(contacts[2].state, ShaftContact::State::forward);
-  EXPECT_EQ(contacts[3].state, ShaftContact::State::backward);
-}
-
 TEST(ContactStates, a_contact_that_changes_too_often_keeps_its_state_and_the_step_is_flagged) {
   NeedleInTissue needle;
   ContactStates states(needle.contacts);
@@ -144,34 +93,6 @@ TEST(ContactStates, a_contact_that_changes_too_often_keeps_its_state_and_the_ste
   }
   EXPECT_NE(report.flags & Step::contact_cycling, 0u);
   EXPECT_EQ(states.contradiction(1, {.axial = 100.0, .slides = -1.0}), 0.0);
-}
-
-TEST(ContactStates, the_tip_cuts_above_its_limit_and_comes_away_where_pulled) {
-  NeedleInTissue needle;
-  ContactStates states(needle.contacts);
-  states.begin(6);
-  Step report;
-  TipContact& tip = needle.tip;
-  tip.set_state(TipContact::State::stick);
-  EXPECT_LE(states.contradiction(0, {.axial = 0.29}), 0.0);
-  EXPECT_NEAR(states.contradiction(0, {.axial = 0.31}), 0.01, 1e-12);
-  states.change(0, {.axial = 0.31}, report);
-  EXPECT_EQ(tip.state(), TipContact::State::cut);
-  EXPECT_NEAR(states.contradiction(0, {.axial = 0.2}), 0.1, 1e-12) << "less than what keeps the cut going";
-  states.change(0, {.axial = 0.2}, report);
-  EXPECT_EQ(tip.state(), TipContact::State::stick);
-  EXPECT_NEAR(states.contradiction(0, {.axial = -0.1}), 0.1, 1e-12);
-  states.change(0, {.axial = -0.1}, report);
-  EXPECT_EQ(tip.state(), TipContact::State::open);
-}
-
-TEST(ContactStates, a_surface_ahead_breaks_on_a_balance_only) {
-  NeedleInTissue needle;
-  ContactStates states(needle.contacts);
-  states.begin(6);
-  needle.tip.set_state(TipContact::State::stick);
-  needle.tip.ahead.be_surface(0, 0.8);
-  EXPECT_EQ(states.contradiction(0, {.axial = 5.0}), 0.0);
 }
 
 /// One sub-step in which the base moves by `way` along z and all forces change by `gain`.
@@ -285,14 +206,6 @@ TEST(Effort, is_not_bounded_while_needles_rest_in_the_tissue) {
   EXPECT_TRUE(effort.allows(1000.0 * effort.tangent()));
 }
 
-TEST(HandForce, bears_what_all_contacts_leave) {
-  NeedleInTissue needle;
-  HandForce hand(needle.block.needle.base(), needle.block.needle);
-  needle.tip.force = Vec3(0, 0.1, 0.5);
-  for (ShaftContact& contact : needle.shaft.all()) contact.force = Vec3(0.01, 0, 0.1);
-  EXPECT_NEAR((hand.now(needle.contacts.forces()) - Vec3(0.03, 0.1, 0.8)).norm(), 0.0, 1e-12);
-}
-
 TEST(HandForce, at_a_puncture_is_found_between_the_balances) {
   NeedleInTissue needle;
   HandForce hand(needle.block.needle.base(), needle.block.needle);
@@ -359,27 +272,6 @@ TEST(NeedleSide, lends_its_springs_only_where_it_is_supported) {
   ASSERT_EQ(side.shaft_springs().size(), 3u);
   EXPECT_EQ(side.shaft_springs()[1].stiffness, 1.0);
   EXPECT_TRUE(side.lends_at_tip());
-}
-
-TEST(ContactRows, friction_drags_the_tissue_the_way_the_needle_slides) {
-  NeedleInTissue needle;
-  ContactRows rows(needle.block.settings, 10);
-  rows.take_places(needle.contacts);
-  constexpr double h = 0.001;
-  for (const double sense : {1.0, -1.0}) {
-    ShaftContact& contact = needle.contact(2);
-    contact.state = sense > 0.0 ? State::forward : State::backward;
-    contact.s_start = contact.s;
-    rows.soften(needle.contacts, h, false);
-    ASSERT_GT(contact.coulomb, 0.0);
-    // Twice the sliding friction: the excess moves the needle ahead of the tissue, the way it slides.
-    const Vec3 along = sense * rows.frame[2].col(2);
-    const double force = 2.0 * contact.coulomb;
-    const double ahead_mm = contact.slip * (force - contact.coulomb) + contact.softness * force;
-    rows.now.segment<3>(6) = force * along;
-    rows.gap.segment<3>(6) = -ahead_mm * along;
-    EXPECT_NEAR(rows.error(2).norm(), 0.0, 1e-12 * ahead_mm) << sense;
-  }
 }
 
 TEST(TissueBlock, is_the_compliances_block_of_the_present_contacts) {

@@ -18,8 +18,8 @@ namespace {
 using Work = ComplianceSupply::Work;
 
 /// A block of tissue without a needle, and an empty store.
-struct Block : test::NeedleInBlock {
-  Block() : nodes(tissue->displacement_nodes()), empty(std::make_shared<ComplianceStore>(tissue)) {}
+struct EmptyBlock : test::NeedleInBlock {
+  EmptyBlock() : nodes(tissue->displacement_nodes()), empty(std::make_shared<ComplianceStore>(tissue)) {}
 
   /// The first nodes that are not held.
   [[nodiscard]] std::vector<Index> free_nodes(std::size_t count) const {
@@ -50,7 +50,7 @@ std::vector<ComplianceRow> rows_for(const RowLedger& ledger, std::span<const Ind
 }
 
 TEST(RowLedger, has_as_many_free_slots_as_are_to_spare) {
-  Block block;
+  EmptyBlock block;
   RowLedger ledger(block.nodes);
   ledger.read(*block.empty, 10);
   EXPECT_EQ(ledger.free_slots(), 10u);
@@ -61,7 +61,7 @@ TEST(RowLedger, has_as_many_free_slots_as_are_to_spare) {
 }
 
 TEST(RowLedger, gets_back_what_the_step_gives_up_and_does_not_ask_again_for_what_it_keeps) {
-  Block block;
+  EmptyBlock block;
   RowLedger ledger(block.nodes);
   ledger.read(*block.empty, 3);
   const std::vector<Index> nodes = block.free_nodes(3);
@@ -82,7 +82,7 @@ TEST(RowLedger, gets_back_what_the_step_gives_up_and_does_not_ask_again_for_what
 }
 
 TEST(RowMaker, makes_the_rows_that_a_needle_is_about_to_need_and_then_no_more) {
-  Block block;
+  EmptyBlock block;
   RowMaker maker(block.tissue, block.empty, nullptr, *block.locator);
   RowReceiver receiver(block.nodes, block.empty, nullptr);
   const TrackCompliance user(block.empty, *block.locator, 2);
@@ -106,7 +106,7 @@ TEST(RowMaker, makes_the_rows_that_a_needle_is_about_to_need_and_then_no_more) {
 
 TEST(RowMaker, asks_for_the_furthest_slots_where_none_is_free) {
   constexpr Index kRoom = 40;  // enough for one place of the tip, not for five
-  Block block;
+  EmptyBlock block;
   RowMaker maker(block.tissue, block.empty, nullptr, *block.locator);
   RowReceiver receiver(block.nodes, block.empty, nullptr);
   const TrackCompliance user(block.empty, *block.locator, 2);
@@ -128,7 +128,7 @@ TEST(RowMaker, asks_for_the_furthest_slots_where_none_is_free) {
 }
 
 TEST(RowReceiver, keeps_the_rows_that_a_contact_needs) {
-  Block block;
+  EmptyBlock block;
   const std::vector<Index> tet_nodes = [&] {
     const auto& tet = block.tissue->mesh().tets[static_cast<std::size_t>(block.in_the_middle().tet)];
     return std::vector<Index>(tet.begin(), tet.end());
