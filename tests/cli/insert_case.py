@@ -27,8 +27,8 @@ retract_speed_mm_per_s = 40
 
 
 def documented_columns(table):
-    """The columns of a table as docs/results.md lists them; a test of the library compares that list with the code."""
-    page = (Path(__file__).resolve().parents[2] / "docs/results.md").read_text(encoding="utf-8")
+    """The columns of a table as its documents list them; a test of the library compares that list with the code."""
+    page = (Path(__file__).resolve().parents[2] / "docs/results/insertion.md").read_text(encoding="utf-8")
     listed = page.split(f"\n## {table}\n")[1].split("\n## ")[0]
     names = [re.match(r"- ((`\w+`(, )?)+)", line) for line in listed.splitlines()]
     return [name for found in names if found for name in re.findall(r"\w+", found[1])]
@@ -86,9 +86,9 @@ def forces(folder):
 
 
 def without_step_times(folder):
-    """The text of forces.csv without its last column."""
-    text = (Path(folder) / "forces.csv").read_text(encoding="utf-8")
-    return [line.rsplit(",", 1)[0] for line in text.splitlines()]
+    """The rows of forces.csv as texts, without the column step_us."""
+    with open(Path(folder) / "forces.csv", newline="", encoding="utf-8") as file:
+        return [{name: text for name, text in row.items() if name != "step_us"} for row in csv.DictReader(file)]
 
 
 def gland_path(folder):

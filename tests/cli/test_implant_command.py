@@ -170,10 +170,10 @@ class Implant(InFolder):
         self.refuse("info", "part.h5", says=["run.h5 that stylet wrote"])
 
     def run_the_example_of_the_documents(self, implant):
-        """Python reads run.h5 as docs/results.md shows it; only where h5py is installed."""
+        """Python reads run.h5 as docs/results/implant.md shows it; only where h5py is installed."""
         if importlib.util.find_spec("h5py") is None:
             return
-        page = (Path(__file__).parents[2] / "docs/results.md").read_text(encoding="utf-8")
+        page = (Path(__file__).parents[2] / "docs/results/implant.md").read_text(encoding="utf-8")
         code = page.split("## run.h5 of an implant")[1].split("```python\n")[1].split("```")[0]
         code = code.replace("OUT/run.h5", str(self.folder / "out/run.h5"))
         said = io.StringIO()

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The map of the template's holes (docs/results.md) and its colours.
+// The map of the template's holes (docs/results) and its colours.
 import { viridis } from './colors';
 import { INK } from './plot_style';
 

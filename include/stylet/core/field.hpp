@@ -12,7 +12,7 @@
 #include <vector>
 
 /// One list of fields for each record: a function `columns(visit, record)` that calls `visit` once for each field, with
-/// its description and its value. Files, tables, JSON and the columns in docs/results.md are made of the same list.
+/// its description and its value. Files, tables, JSON and the columns in docs/results are made of the same list.
 namespace stylet::record {
 
 /// The formats that have a field.
@@ -24,7 +24,7 @@ struct Field {
   /// tip_x_mm, tip_y_mm, tip_z_mm in columns.
   const char* name;
   const char* unit = "";
-  const char* meaning = "";        ///< for docs/results.md
+  const char* meaning = "";        ///< for docs/results
   unsigned formats = kAll;         ///< those that have it
   int decimals = 6;                ///< in CSV
   int version = 1;                 ///< first version of the file's format that has it

@@ -51,7 +51,7 @@ struct ImplantRecord {
 /// Collects the record of an implant.
 ImplantRecord implant_record(const ImplantOutcome& outcome);
 
-/// Writes a record as HDF5 (docs/results.md). The file appears whole or not at all.
+/// Writes a record as HDF5 (docs/results). The file appears whole or not at all.
 /// Errors: the file cannot be written.
 Result<> write_implant_record(ImplantRecord record, const std::filesystem::path& path);
 

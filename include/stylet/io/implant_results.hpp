@@ -50,20 +50,20 @@ struct ImplantOutcome {
   std::vector<std::string> warnings;  ///< of reader, mesher, plan and simulation
 };
 
-/// Writes the result folder of `stylet implant` (docs/results.md): report.html, seeds.csv, run.h5, the folders planned
+/// Writes the result folder of `stylet implant` (docs/results): report.html, seeds.csv, run.h5, the folders planned
 /// and delivered with all files of `stylet dose`, and summary.json last; with found seeds also found.csv and the folder
 /// found. Without them, a found.csv of an earlier run is removed, and so is the dose.json that marks its folder as
 /// complete. Errors: the folder cannot be created or written.
 Result<> write_implant_results(const ImplantOutcome& outcome, const std::filesystem::path& folder,
                                const Progress& progress = {});
 
-/// The text of summary.json (docs/results.md).
+/// The text of summary.json (docs/results).
 std::string implant_json(const ImplantOutcome& outcome);
 
-/// The text of seeds.csv (docs/results.md): a row for each seed of the plan.
+/// The text of seeds.csv (docs/results): a row for each seed of the plan.
 std::string seeds_csv(const ImplantOutcome& outcome);
 
-/// The text of found.csv (docs/results.md): a row for each seed of the plan, with the place where it was found, and for
+/// The text of found.csv (docs/results): a row for each seed of the plan, with the place where it was found, and for
 /// each seed that was found without a match.
 /// @param history the simulated implant, of which `found` is the comparison
 std::string found_csv(const ImplantHistory& history, const FoundImplant& found);

@@ -14,7 +14,7 @@
 
 namespace stylet {
 
-/// Writes run.h5 (docs/results.md) during a session of unknown length. A thread of its own writes the added data to the
+/// Writes run.h5 (docs/results) during a session of unknown length. A thread of its own writes the added data to the
 /// disk five times a second, so a process that is killed loses less than a second. Calls never wait for the disk;
 /// each returns the first error of writing, if there was one.
 class RunRecorder {

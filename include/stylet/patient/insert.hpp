@@ -32,7 +32,7 @@ struct InsertResult {
 };
 
 /// Carries out all insertions of a model and writes the result folder: report, pictures, tables and the recording
-/// (docs/results.md). It takes seconds to minutes.
+/// (docs/results). It takes seconds to minutes.
 /// @param folder is created if it is missing; files of an earlier run in it are replaced
 /// Errors: a folder that cannot be written; a map for a scenario that cannot have one (check_mappable()); errors of
 /// run().

@@ -158,7 +158,7 @@ void columns(auto& visit, record::Of<ImplantRecord> auto& r) {
 namespace results {
 
 /// A seed, or a dwell position, in seeds.csv and in summary.json.
-struct ShownSeed {
+struct SeedRow {
   SeedHistory seed;
   std::string needle;  ///< name of its needle or catheter
   Implant implant = Implant::permanent;
@@ -166,7 +166,7 @@ struct ShownSeed {
 };
 
 /// A seed in found.csv and in summary.json: a seed of the implant, where it was found, or both.
-struct ShownFound {
+struct FoundRow {
   std::optional<std::size_t> number;  ///< in the plan; empty: a found seed without a match
   std::optional<std::string> needle;
   std::optional<std::size_t> found;  ///< in the file; empty: it was not found
@@ -176,7 +176,7 @@ struct ShownFound {
   std::optional<Vec3> remainder_mm, remainder_without_shift_mm;
 };
 
-void columns(auto& visit, record::Of<ShownSeed> auto& shown) {
+void columns(auto& visit, record::Of<SeedRow> auto& shown) {
   using record::Field, record::kCsv, record::kJson;
   auto& s = shown.seed;
   const bool dwell = shown.implant == Implant::temporary;
@@ -213,7 +213,7 @@ void columns(auto& visit, record::Of<ShownSeed> auto& shown) {
     if (meaning_of(words.cause, shown.implant) != nullptr) visit(record::field_of(words), s.by(words.cause));
 }
 
-void columns(auto& visit, record::Of<ShownFound> auto& f) {
+void columns(auto& visit, record::Of<FoundRow> auto& f) {
   using record::Field, record::kCsv, record::kJson;
   visit(Field("seed", "", "in the plan, from 1").from_one().as("number"), f.number);
   visit(Field("needle", "", "name of its needle"), f.needle);

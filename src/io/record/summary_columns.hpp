@@ -3,7 +3,7 @@
 
 #include "record/run_columns.hpp"
 
-/// The keys of summary.json of an insertion; docs/results.md says what they mean.
+/// The keys of summary.json of an insertion; docs/results says what they mean.
 namespace stylet {
 
 void columns(auto& visit, record::Of<MeshChange> auto& m) {

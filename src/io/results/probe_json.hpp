@@ -7,7 +7,7 @@
 
 namespace stylet::results {
 
-/// The probe of summary.json. Keys and units: docs/results.md.
+/// The probe of summary.json. Keys and units: docs/results.
 nlohmann::ordered_json probe_json(const ProbeReport& report);
 
 }  // namespace stylet::results

@@ -8,7 +8,7 @@
 #include <array>
 #include <string>
 
-/// The format of run.h5 (docs/results.md), shared by its writer and its reader. The columns of its rows are in
+/// The format of run.h5 (docs/results), shared by its writer and its reader. The columns of its rows are in
 /// record/run_columns.hpp and record/implant_columns.hpp. Every row has a check: the CRC-32 of its other columns in
 /// their order and, for a frame, of its displacement, needle points and contacts. A row with a wrong check has not
 /// reached the disk completely, or has been changed.

@@ -10,7 +10,7 @@
 
 namespace stylet::results {
 
-/// The text of summary.json. Keys and units: docs/results.md. A value that is not finite becomes null.
+/// The text of summary.json. Keys and units: docs/results. A value that is not finite becomes null.
 /// @param probe the ultrasound probe, for the file beside the report; null if there is none
 std::string summary_json(const Summary& summary, const ProbeReport* probe = nullptr);
 

@@ -35,11 +35,12 @@ std::vector<std::string> keys_of(const nlohmann::ordered_json& object) {
 
 }  // namespace
 
-TEST(ForcesCsv, has_exactly_the_documented_columns) {
-  EXPECT_EQ(
-      record::csv_of(std::vector<Step>{}),
-      "time_s,base_depth_mm,force_axial_N,force_sagittal_N,force_lateral_N,torque_x_Nmm,torque_y_Nmm,torque_z_Nmm,"
-      "tip_x_mm,tip_y_mm,tip_z_mm,tip_state,contacts,sticking,iterations,step_us\n");
+/// Programs that read it may count on the places of these columns. New ones come behind them.
+TEST(ForcesCsv, begins_with_the_columns_that_it_always_had) {
+  EXPECT_TRUE(record::csv_of(std::vector<Step>{})
+                  .starts_with("time_s,base_depth_mm,force_axial_N,force_sagittal_N,force_lateral_N,torque_x_Nmm,"
+                               "torque_y_Nmm,torque_z_Nmm,tip_x_mm,tip_y_mm,tip_z_mm,tip_state,contacts,sticking,"
+                               "iterations,step_us"));
 }
 
 TEST(ForcesCsv, one_line_per_step_with_fixed_digits) {
@@ -58,21 +59,20 @@ TEST(ForcesCsv, one_line_per_step_with_fixed_digits) {
   step.step_us = 412.34;
   const auto lines = lines_of(record::csv_of(std::span<const Step>(&step, 1)));
   ASSERT_EQ(lines.size(), 2U);
-  EXPECT_EQ(lines[1],
-            "1.000500,-2.500000,0.333333333,0.000000000,-0.250000000,1.000000000,-2.000000000,3.500000000,"
-            "10.000000,20.125000,-30.000000,in_track,7,3,2,412.3");
+  EXPECT_TRUE(
+      lines[1].starts_with("1.000500,-2.500000,0.333333333,0.000000000,-0.250000000,1.000000000,-2.000000000,"
+                           "3.500000000,10.000000,20.125000,-30.000000,in_track,7,3,2,412.3"))
+      << lines[1];
 }
 
 TEST(ForcesCsv, the_same_run_gives_the_same_bytes_apart_from_step_us) {
   auto one = synthetic_run(), other = synthetic_run();
   EXPECT_EQ(record::csv_of(one.steps), record::csv_of(other.steps));
   for (auto& step : other.steps) step.step_us += 17;
-  const auto a = lines_of(record::csv_of(one.steps)), b = lines_of(record::csv_of(other.steps));
-  ASSERT_EQ(a.size(), one.steps.size() + 1);
-  for (std::size_t k = 1; k < a.size(); ++k) {
-    EXPECT_NE(a[k], b[k]);
-    EXPECT_EQ(a[k].substr(0, a[k].rfind(',')), b[k].substr(0, b[k].rfind(',')));
-  }
+  EXPECT_NE(record::csv_of(one.steps), record::csv_of(other.steps));
+  for (auto* run : {&one, &other})
+    for (auto& step : run->steps) step.step_us = 0;
+  EXPECT_EQ(record::csv_of(one.steps), record::csv_of(other.steps));
 }
 
 TEST(GlandCsv, has_the_documented_columns_in_patient_directions_and_planes) {

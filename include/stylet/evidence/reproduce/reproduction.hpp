@@ -35,7 +35,7 @@ struct Reproduction {
 /// Reproduces figures 2, 5 and 6 and the table. Times are processor times with one BLAS thread.
 Result<Reproduction> reproduce(const ReproduceOptions& options, const Progress& progress = {});
 
-/// Everything except the curves, as JSON with the keys fig2, fig5, fig6, table, machine, … (docs/results.md).
+/// Everything except the curves, as JSON with the keys fig2, fig5, fig6, table, machine, … (docs/results).
 std::string reproduction_json(const Reproduction& reproduction);
 
 /// The self-contained HTML page. Errors: failed, when the embedded template does not fit the program.

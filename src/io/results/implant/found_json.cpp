@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "implant/found_json.hpp"
 
-#include "implant/shown_seeds.hpp"
+#include "implant/seed_rows.hpp"
 #include "record/json.hpp"
 #include "stylet/io/dose_results.hpp"
 
@@ -32,7 +32,7 @@ Json found_json(const ImplantHistory& history, const FoundImplant& found) {
   const SeedMatching& matching = comparison.matching;
   Json seeds = Json::array(), not_found = Json::array(), extra = Json::array();
   for (const MatchedSeed& matched : comparison.seeds)
-    seeds.push_back(record::json_of(shown_found(matched.seed, &matched, history, comparison)));
+    seeds.push_back(record::json_of(row_of_found(matched.seed, &matched, history, comparison)));
   for (const std::size_t k : matching.not_found) not_found.push_back(history.seeds[k].number + 1);
   for (const std::size_t k : matching.extra) {
     const FoundSeed& seed = found.seeds.seeds[k];

@@ -6,7 +6,7 @@
 
 namespace stylet::results {
 
-/// `implant.found` of summary.json (docs/results.md). @param history the simulated implant
+/// `implant.found` of summary.json (docs/results). @param history the simulated implant
 Json found_json(const ImplantHistory& history, const FoundImplant& found);
 
 /// Correlation and explained variance of simulated and found errors; null where there are none.

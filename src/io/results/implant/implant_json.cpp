@@ -2,7 +2,7 @@
 #include "implant/found_json.hpp"
 #include "implant/json_parts.hpp"
 #include "implant/oedema_section.hpp"
-#include "implant/shown_seeds.hpp"
+#include "implant/seed_rows.hpp"
 #include "probe_json.hpp"
 #include "record/json.hpp"
 #include "stylet/core/version.hpp"
@@ -65,7 +65,7 @@ std::string implant_json(const ImplantOutcome& outcome) {
   const Json delivered = Json::parse(dose_json(outcome.delivered));
   Json seeds = Json::array(), needles = Json::array(), why = Json::array();
   const bool temporary = implant_of(history.seeds) == Implant::temporary;
-  for (const SeedHistory& seed : history.seeds) seeds.push_back(record::json_of(results::shown_seed(seed, outcome)));
+  for (const SeedHistory& seed : history.seeds) seeds.push_back(record::json_of(results::row_of_seed(seed, outcome)));
   for (const NeedleHistory& needle : history.needles) needles.push_back(record::json_of(needle));
   for (const CauseOfErrors& cause : causes_of_errors(history.seeds)) {
     why.push_back({{"cause", to_string(cause.cause)},

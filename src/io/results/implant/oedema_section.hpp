@@ -22,7 +22,7 @@ std::string oedema_words(const DoseCourse& course);
 /// D90 [Gy] so far with and without swelling; and both D90 and their difference in the end.
 nlohmann::ordered_json oedema_curves_json(const DoseCourse& course);
 
-/// The key `oedema` of summary.json (docs/results.md).
+/// The key `oedema` of summary.json (docs/results).
 nlohmann::ordered_json oedema_json(const DoseCourse& course);
 
 }  // namespace stylet::results

@@ -7,7 +7,7 @@
 
 #include <filesystem>
 
-/// The format of the run.h5 of an implant (docs/results.md), shared by its writer and its reader.
+/// The format of the run.h5 of an implant (docs/results), shared by its writer and its reader.
 namespace stylet::results {
 
 /// Version of the format that is written: from 7 on in the same numbers as that of run.h5 of an insertion, of which the

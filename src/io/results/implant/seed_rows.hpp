@@ -9,11 +9,11 @@
 /// Seeds as seeds.csv, found.csv and summary.json show them.
 namespace stylet::results {
 
-ShownSeed shown_seed(const SeedHistory& seed, const ImplantOutcome& outcome);
+SeedRow row_of_seed(const SeedHistory& seed, const ImplantOutcome& outcome);
 
 /// @param matched the seed that was found for it; null: none was
-ShownFound shown_found(const SeedHistory& seed, const MatchedSeed* matched, const ImplantHistory& history,
-                       const FoundComparison& comparison);
+FoundRow row_of_found(const SeedHistory& seed, const MatchedSeed* matched, const ImplantHistory& history,
+                      const FoundComparison& comparison);
 
 /// A length [mm] as the tables of seeds have it, whatever digits a field says.
 std::string four_decimals(double value, int decimals);

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "implant/shown_seeds.hpp"
+#include "implant/seed_rows.hpp"
 
 #include <fmt/format.h>
 
 namespace stylet::results {
 
-ShownSeed shown_seed(const SeedHistory& seed, const ImplantOutcome& outcome) {
+SeedRow row_of_seed(const SeedHistory& seed, const ImplantOutcome& outcome) {
   const Implant implant = implant_of(outcome.history.seeds);
   const double dwell_s = implant == Implant::temporary ? outcome.planned.plan.sources[seed.number].dwell_s : 0.0;
   return {seed, outcome.history.needles[seed.needle].name, implant, dwell_s};
 }
 
-ShownFound shown_found(const SeedHistory& seed, const MatchedSeed* matched, const ImplantHistory& history,
-                       const FoundComparison& comparison) {
-  ShownFound shown;
+FoundRow row_of_found(const SeedHistory& seed, const MatchedSeed* matched, const ImplantHistory& history,
+                      const FoundComparison& comparison) {
+  FoundRow shown;
   shown.number = seed.number;
   shown.needle = history.needles[seed.needle].name;
   shown.planned_mm = seed.planned_mm;
