@@ -177,3 +177,14 @@ test('the charts of an implant fit into narrow windows and tell the values at th
     await page.close();
   }
 });
+
+test('no report is wider than a telephone', async () => {
+  const insertion = '[[insertion]]\nhole = "C4"\ndepth_mm = 40\nspeed_mm_per_s = 60\nretract_speed_mm_per_s = 60\n';
+  writeFileSync(path.join(folder, 'one.toml'), SCENARIO.replace(/\[plan\][^]*(?=\[run\])/, insertion));
+  stylet('insert', 'one.toml', '-o', 'insertion', '--set', 'output.pictures=false');
+  for (const report of ['insertion', 'implant', 'dose']) {
+    const { page } = await openVisitor(browser, pathToFileURL(path.join(folder, report, 'report.html')).href, { width: 390 });
+    assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 390, report);
+    await page.close();
+  }
+});
