@@ -11,6 +11,7 @@ from pathlib import Path
 
 from program import STYLET, InFolder
 from readme import not_to_trust
+from shared_data import SHARED
 
 PART = int(sys.argv.pop(1)) if len(sys.argv) > 1 and sys.argv[1].isdigit() else 1
 
@@ -31,7 +32,7 @@ class ValidateAll(InFolder):
         listed = self.json_of("validate", "--list")["rows"]
         mine = [row["id"] for row in listed if part_of(row) == PART and row["id"] != "sensitivity"]
         self.assertGreater(len(mine), 5)
-        subprocess.run([STYLET, "validate", "-o", self.folder / "out", "--only", *mine], check=True,
+        subprocess.run([STYLET, "validate", "-o", self.folder / "out", "--data", SHARED, "--only", *mine], check=True,
                        capture_output=True, timeout=3000)
         rows = self.read("out/validate.json")["rows"]
         judged = {row["id"]: row["pass"] for row in rows if row["pass"] is not None}

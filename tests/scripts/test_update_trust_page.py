@@ -50,6 +50,8 @@ class TrustPage(unittest.TestCase):
         self.assertEqual(self.run_on(PAGE, "--check", rows=ROWS[1:])[0], 1)
         stale = PAGE.replace("0.06 %", "0.21 %")
         self.assertEqual(self.run_on(stale, "--check", "--part", rows=ROWS[:1])[0], 1)
+        skipped = {"id": "gap", "value": None, "pass": None, "skipped": True}
+        self.assertEqual(self.run_on(PAGE, "--check", "--part", rows=[ROWS[0], skipped])[0], 0)
 
     def test_a_row_that_misses_and_is_not_named_is_named(self):
         status, said, _ = self.run_on(PAGE.replace("`gap` does", "None does"))
