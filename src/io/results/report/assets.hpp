@@ -6,7 +6,7 @@
 /// Pages of web/report/, which the build embeds into the library.
 namespace stylet::results {
 
-/// What a page is made of: its body, which is HTML with {{slots}}, its style sheet and its script.
+/// The parts of a page: its body (HTML with {{slots}}), its style sheet and its script.
 struct PageAssets {
   std::string_view body, css, js;
 };
