@@ -73,7 +73,8 @@ STYLET_RT_API const char* stylet_rt_status_text(stylet_rt_status status) STYLET_
 typedef struct stylet_rt_model stylet_rt_model;
 
 /* Loads a saved model (`stylet prepare SCENARIO.toml -o MODEL.stylet`). A file in which any bit has changed is an
- * error. The scenario in the file and the settings are parsed in a child process, which has ended when this returns.
+ * error. The scenario in the file and the settings are parsed by the program stylet-reader, which has ended when this
+ * returns (docs/formats.md says where it is looked for).
  * @param settings keys of the scenario to change, "needle.length_mm=180", as for --set of `stylet insert`; changing a
  *        key on which the saved compliance depends is an error. May be null with settings_count = 0
  * @param model output: the model, or null on failure. To be released with stylet_rt_model_destroy */

@@ -23,6 +23,13 @@ double longest_edge(const std::array<Vec3, 4>& corner) {
   return longest;
 }
 
+/// Number of parts of the edges of a tetrahedron: about one sample for a cube of the step, as in other structures, and
+/// in a flat or long tetrahedron more, so that no part is longer than three steps.
+int parts_of(const std::array<Vec3, 4>& corner, double volume, double step) {
+  constexpr double longest_part = 3.0;
+  return parts_of(std::max(std::cbrt(volume), longest_edge(corner) / longest_part), step);
+}
+
 /// Divides a tetrahedron into parts³ tetrahedra of equal volume and adds their centroids. It is the image of the set
 /// 1 ≥ a ≥ b ≥ c ≥ 0 under x₀ + a (x₁ − x₀) + b (x₂ − x₁) + c (x₃ − x₂). Each small cube of this space is divided into
 /// six tetrahedra in the same way, one for each order of the coordinates (Kuhn 1960), and each of them lies wholly
@@ -104,7 +111,7 @@ Result<StructureSamples> sample_structure(const TetMesh& mesh, int region, doubl
     std::array<Vec3, 4> corner;
     for (std::size_t a = 0; a < 4; ++a)
       corner[a] = mesh.nodes[static_cast<std::size_t>(mesh.tets[static_cast<std::size_t>(t)][a])];
-    const int parts = parts_of(longest_edge(corner), step_mm);
+    const int parts = parts_of(corner, tet_volume(mesh, t), step_mm);
     const double number = std::pow(parts, 3);
     if (static_cast<double>(samples.points.size()) + number > dose::kMostSamples)
       return dose::too_many_samples(step_mm, where);

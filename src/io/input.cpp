@@ -2,8 +2,8 @@
 #include "stylet/io/input.hpp"
 
 #include "detail/file_kind.hpp"
-#include "detail/guard.hpp"
-#include "detail/parsers.hpp"
+#include "reading/ask.hpp"
+#include "reading/tasks.hpp"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,6 @@ namespace stylet {
 
 namespace fs = std::filesystem;
 using detail::FileKind;
-using detail::guarded;
 
 namespace {
 
@@ -30,7 +29,7 @@ Result<PatientInput> read_input(const fs::path& path, const MeshReadOptions& mes
                                 const MaskReadOptions& mask_options, std::span<const std::string> skip) {
   std::error_code code;
   if (fs::is_directory(path, code)) {
-    const Result<std::string> found = guarded<std::string>(path, [&] { return detail::only_patient_in(path); });
+    const Result<std::string> found = detail::ask(detail::kOnlyPatient, path);
     return found ? read_input(*found, mesh_options, mask_options, skip) : Result<PatientInput>(found.error());
   }
   MaskReadOptions of_mask = mask_options;
@@ -39,7 +38,7 @@ Result<PatientInput> read_input(const fs::path& path, const MeshReadOptions& mes
   if (!kind) return kind.error();
   bool is_mask = *kind == FileKind::nifti || *kind == FileKind::nrrd || *kind == FileKind::metaimage;
   if (*kind == FileKind::dicom) {
-    const Result<bool> segmentation = guarded<bool>(path, [&]() -> Result<bool> { return detail::is_dicom_seg(path); });
+    const Result<bool> segmentation = detail::ask(detail::kIsSegmentation, path);
     if (!segmentation) return segmentation.error();
     is_mask = *segmentation;
   }

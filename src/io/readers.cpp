@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The public readers: they identify the format of the file and run its parser in a child process.
+// The public readers: they identify the format of the file and have the reading program parse it.
 #include "detail/file_kind.hpp"
-#include "detail/guard.hpp"
-#include "detail/parsers.hpp"
 #include "detail/reach.hpp"
-#include "mesh/gmsh_library.hpp"
 #include "mesh/raw_mesh.hpp"
-#include "mesh/surfaces.hpp"
+#include "reading/ask.hpp"
+#include "reading/tasks.hpp"
 #include "stylet/core/printable.hpp"
 #include "stylet/geom/structure_names.hpp"
+#include "stylet/io/contours_io.hpp"
+#include "stylet/io/label_image_io.hpp"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,6 @@ namespace stylet {
 
 namespace fs = std::filesystem;
 using detail::FileKind;
-using detail::guarded;
 
 namespace {
 
@@ -84,21 +83,21 @@ Result<ContourSet> read_rtstruct(const fs::path& path, std::span<const std::stri
   std::error_code code;
   fs::path file = path;
   if (fs::is_directory(path, code)) {
-    const Result<std::string> found = guarded<std::string>(path, [&] { return detail::only_patient_in(path); });
+    const Result<std::string> found = detail::ask(detail::kOnlyPatient, path);
     if (!found) return found.error();
     file = *found;
   }
   Result<FileKind> kind = detail::identify(file);
   if (!kind) return kind.error();
   if (*kind != FileKind::dicom) return wrong_kind(file, *kind, "a DICOM RT Structure Set");
-  return within_reach(guarded<ContourSet>(file, [&] { return detail::parse_rtstruct(file, skip); }), skip);
+  return within_reach(detail::ask(detail::kRtstruct, file, {skip.begin(), skip.end()}), skip);
 }
 
 Result<ContourSet> read_contour_json(const fs::path& path, std::span<const std::string> skip) {
   Result<FileKind> kind = detail::identify(path);
   if (!kind) return kind.error();
   if (*kind != FileKind::contour_json) return wrong_kind(path, *kind, "a contour JSON file");
-  return within_reach(guarded<ContourSet>(path, [&] { return detail::parse_contour_json(path, skip); }), skip);
+  return within_reach(detail::ask(detail::kContourJson, path, {skip.begin(), skip.end()}), skip);
 }
 
 Result<LabelImage> read_label_image(const fs::path& path, const MaskReadOptions& options) {
@@ -106,13 +105,10 @@ Result<LabelImage> read_label_image(const fs::path& path, const MaskReadOptions&
   if (!kind) return kind.error();
   switch (*kind) {
     case FileKind::dicom:
-      return with_printable_names(guarded<LabelImage>(path, [&] { return detail::parse_dicom_seg(path, options); }));
     case FileKind::nifti:
-      return with_printable_names(guarded<LabelImage>(path, [&] { return detail::parse_nifti(path, options); }));
     case FileKind::nrrd:
-      return with_printable_names(guarded<LabelImage>(path, [&] { return detail::parse_nrrd(path, options); }));
     case FileKind::metaimage:
-      return with_printable_names(guarded<LabelImage>(path, [&] { return detail::parse_metaimage(path, options); }));
+      return with_printable_names(detail::ask(detail::kMask, path, *kind, options.volume, options.skip));
     default:
       return wrong_kind(path, *kind, "a label mask (NIfTI, NRRD, MetaImage, DICOM SEG)");
   }
@@ -120,35 +116,20 @@ Result<LabelImage> read_label_image(const fs::path& path, const MaskReadOptions&
 
 Result<TetMesh> read_tet_mesh(const fs::path& path, const MeshReadOptions& options) {
   using detail::MeshWithNotes;
-  using detail::RawMesh;
   if (Result<> good = detail::check_scale(options.scale); !good) return good.error();
   Result<FileKind> kind = detail::identify(path);
   if (!kind) return kind.error();
-  std::function<Result<RawMesh>()> parse;
   switch (*kind) {
     case FileKind::vtu:
-      parse = [&] { return detail::parse_vtk_mesh(path, true); };
-      break;
     case FileKind::vtk_legacy:
-      parse = [&] { return detail::parse_vtk_mesh(path, false); };
-      break;
     case FileKind::gmsh:
     case FileKind::medit:
-      // The parent loads the library once; otherwise each child process would load it again.
-      if (const auto library = detail::GmshLibrary::get(); !library) return library.error();
-      parse = [&] { return detail::parse_gmsh_mesh(path, *kind == FileKind::medit); };
-      break;
     case FileKind::tetgen:
-      parse = [&] { return detail::parse_tetgen_mesh(path); };
       break;
     default:
       return wrong_kind(path, *kind, "a tetrahedral mesh (VTU, VTK, gmsh, MEDIT, TetGen)");
   }
-  Result<MeshWithNotes> read = guarded<MeshWithNotes>(path, [&]() -> Result<MeshWithNotes> {
-    Result<RawMesh> raw = parse();
-    if (!raw) return raw.error();
-    return detail::finish_mesh(std::move(*raw), path.string(), options);
-  });
+  Result<MeshWithNotes> read = detail::ask(detail::kTetMesh, path, *kind, options.scale, options.regions_from);
   if (!read) return read.error();
   make_printable(read->notes);
   if (options.notes != nullptr) options.notes->insert(options.notes->end(), read->notes.begin(), read->notes.end());
@@ -160,21 +141,17 @@ Result<std::vector<Surface>> read_surfaces(const fs::path& path, const MeshReadO
   if (Result<> good = detail::check_scale(options.scale); !good) return good.error();
   Result<FileKind> kind = detail::identify(path);
   if (!kind) return kind.error();
-  std::function<Result<SurfacesWithNotes>()> parse;
   switch (*kind) {
     case FileKind::stl:
     case FileKind::ply:
     case FileKind::obj:
     case FileKind::vtp:
-      parse = [&] { return detail::parse_surface(path, *kind, options.scale); };
-      break;
     case FileKind::glb:
-      parse = [&] { return detail::parse_glb(path, options.scale); };
       break;
     default:
       return wrong_kind(path, *kind, "a triangulated surface (STL, PLY, OBJ, VTP, GLB)");
   }
-  Result<SurfacesWithNotes> read = guarded<SurfacesWithNotes>(path, parse);
+  Result<SurfacesWithNotes> read = detail::ask(detail::kSurfaces, path, *kind, options.scale);
   if (!read) return read.error();
   for (Surface& surface : read->surfaces) surface.name = printable(surface.name);
   make_printable(read->notes);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "needle_models.hpp"
 
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -13,24 +14,9 @@ namespace stylet::serve {
 namespace {
 
 constexpr int kNiceCompiling = 10;  // lower priority than the loop, the pictures and a browser on this machine
+constexpr std::size_t kKept = 2;    // the present needle and the next one
 
 struct NotNeeded {};
-
-double megabytes_of(const NeedleModels::Ready& ready) {
-  constexpr double per_number = 8e-6;
-  const double nodes = ready.model->mesh().node_count();
-  const double stored = ready.model->store() ? static_cast<double>(ready.model->store()->stored().size()) : 0.0;
-  // Mesh, factor of the stiffness and near field together, measured on some thousand nodes.
-  constexpr double numbers_per_dof = 1000.0;
-  return per_number * (9.0 * stored * stored + 3.0 * nodes * numbers_per_dof) +
-         (ready.field ? ready.field->statistics().megabytes : 0.0);
-}
-
-double megabytes_for_models() {
-  const double machine =
-      1e-6 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  return std::min(NeedleModels::kMostMegabytes, 0.25 * machine);
-}
 
 }  // namespace
 
@@ -61,7 +47,7 @@ void NeedleModels::begin_after(std::size_t needle) {
     const std::scoped_lock lock(mutex_);
     begins_ = true;
     current_ = needle;
-    is_full_ = false;
+    forget_others();
   }
   woken_.notify_all();
 }
@@ -70,6 +56,8 @@ void NeedleModels::keep(std::size_t needle, Ready ready) {
   const std::scoped_lock lock(mutex_);
   ready_[needle] = std::move(ready);
   changed_ = true;
+  current_ = needle;
+  forget_others();
 }
 
 std::optional<NeedleModels::Ready> NeedleModels::find(std::size_t needle) {
@@ -85,16 +73,11 @@ std::optional<std::vector<bool>> NeedleModels::news() {
   return all;
 }
 
-/// How many needles later a needle is needed.
-std::size_t NeedleModels::distance(std::size_t needle) const {
-  return (needle + plans_.size() - current_) % plans_.size();
-}
-
 /// The needle to compile next; waits until there is one. Empty when the thread has to end.
 std::optional<std::size_t> NeedleModels::next() {
   std::unique_lock lock(mutex_);
   while (!given_up_) {
-    for (std::size_t k = 0; k < plans_.size() && begins_ && !is_full_; ++k) {
+    for (std::size_t k = 0; k < std::min(kKept, plans_.size()) && begins_; ++k) {
       const std::size_t needle = (current_ + k) % plans_.size();
       if (!ready_[needle] && !failed_[needle]) return needle;
     }
@@ -103,19 +86,13 @@ std::optional<std::size_t> NeedleModels::next() {
   return std::nullopt;
 }
 
-/// Gives up the models that will be needed last, while all together take too much memory. The mutex is locked.
-void NeedleModels::drop_farthest(std::size_t but) {
-  double sum = 0.0;
-  for (const auto& ready : ready_) sum += ready ? megabytes_of(*ready) : 0.0;
-  while (sum > megabytes_for_models()) {
-    std::size_t farthest = current_;
-    for (std::size_t k = 0; k < ready_.size(); ++k) {
-      if (ready_[k] && distance(k) > distance(farthest)) farthest = k;
-    }
-    if (farthest == current_) return;
-    sum -= megabytes_of(*ready_[farthest]);
-    ready_[farthest].reset();
-    if (farthest == but || distance(farthest) >= distance(but)) is_full_ = true;
+/// Forgets all models but those that are kept. The mutex is locked.
+void NeedleModels::forget_others() {
+  for (std::size_t needle = 0; needle < ready_.size(); ++needle) {
+    const std::size_t later = (needle + ready_.size() - current_) % ready_.size();
+    if (later < kKept || !ready_[needle]) continue;
+    ready_[needle].reset();
+    changed_ = true;
   }
 }
 
@@ -142,12 +119,15 @@ void NeedleModels::compile(std::size_t needle) {
     return;
   }
   ready_[needle] = std::move(*made);
-  drop_farthest(needle);
+  forget_others();  // another needle may be the present one by now
 }
 
 void NeedleModels::run() {
   (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceCompiling);
-  while (const auto needle = next()) compile(*needle);
+  while (const auto needle = next()) {
+    compile(*needle);
+    malloc_trim(0);  // what forgotten models took goes back to the system
+  }
   done_.store(true, std::memory_order_release);
 }
 

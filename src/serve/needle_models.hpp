@@ -15,16 +15,12 @@
 
 namespace stylet::serve {
 
-/// Compiles the models of a plan's needles in a thread of low priority, while the needle moves: first the needle that
-/// follows the present one, then the others in their order. So the next needle of the plan is there at once. For each
-/// it also prepares the displacement field of the pictures.
-///
-/// As many models are kept as fit into a quarter of the machine's memory and kMostMegabytes; a model of 3,000 nodes
-/// takes about 100 MB. Those that will be needed last are given up first.
+/// Compiles the model of the needle that follows the present one of a plan, in a thread of low priority, while the
+/// present one moves: so the next needle of the plan is there at once. With the model it prepares the displacement
+/// field of the pictures. The models of the present needle and of the next one are kept, and no others: a model of
+/// 3,000 nodes takes about 100 MB, and a session of many needles is to take no more memory than one of two.
 class NeedleModels {
  public:
-  static constexpr double kMostMegabytes = 3000.0;
-
   /// A compiled needle.
   struct Ready {
     std::shared_ptr<const Model> model;
@@ -39,9 +35,9 @@ class NeedleModels {
   NeedleModels(const NeedleModels&) = delete;
   NeedleModels& operator=(const NeedleModels&) = delete;
 
-  /// Starts to work, or continues with the needles that follow this one.
+  /// Starts to work, or continues with the needle that follows this one, the present one.
   void begin_after(std::size_t needle);
-  /// Keeps a model that was compiled elsewhere.
+  /// Keeps the model of a needle that is now the present one.
   void keep(std::size_t needle, Ready ready);
   /// The model of a needle; empty if it is not compiled.
   [[nodiscard]] std::optional<Ready> find(std::size_t needle);
@@ -57,8 +53,7 @@ class NeedleModels {
   void run();
   [[nodiscard]] std::optional<std::size_t> next();
   void compile(std::size_t needle);
-  void drop_farthest(std::size_t but);
-  [[nodiscard]] std::size_t distance(std::size_t needle) const;
+  void forget_others();
 
   OtherNeedles needles_;
   std::vector<InsertionPlan> plans_;
@@ -72,7 +67,6 @@ class NeedleModels {
   std::vector<bool> failed_;
   bool begins_ = false;
   std::size_t current_ = 0;
-  bool is_full_ = false;  ///< no further model fits into the memory until another needle is the present one
   bool changed_ = false;
   std::thread thread_;  ///< last member, so that it starts when the others exist
 };

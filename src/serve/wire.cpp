@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "wire.hpp"
 
+#include "io/detail/json_text.hpp"
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -72,7 +74,9 @@ std::optional<HandTarget> decode_hand(std::span<const std::byte> message) {
 }
 
 std::optional<Command> decode_command(std::string_view text) {
-  const auto json = nlohmann::json::parse(text, nullptr, false);
+  const Result<nlohmann::json> parsed = detail::parse_json(text, "command");
+  if (!parsed) return std::nullopt;
+  const nlohmann::json& json = *parsed;
   if (!json.is_object() || !json.contains("do") || !json["do"].is_string()) return std::nullopt;
   const auto row = std::ranges::find(commands(), json["do"].get_ref<const std::string&>(), &CommandRow::word);
   if (row == commands().end()) return std::nullopt;

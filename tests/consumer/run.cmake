@@ -24,6 +24,9 @@ foreach(program rt_loop rt_loop_cmake)
   endif()
 endforeach()
 
+# The programs of this project are not beside the library that was installed to a folder of the test.
+set(ENV{STYLET_READER} ${WORK}/prefix/libexec/stylet/stylet-reader)
+
 # The example's own words come from a patient's file; the demo patient is written to one first.
 run(${WORK}/prefix/bin/stylet --quiet phantom -o ${WORK}/case)
 execute_process(COMMAND ${WORK}/build/first_insertion ${WORK}/case/phantom.dcm WORKING_DIRECTORY ${WORK}

@@ -347,6 +347,16 @@ TEST(VolumeSamples, of_a_mesh_and_of_a_mask_have_the_volume_and_the_centre_of_th
   EXPECT_NEAR(1000.0 * samples.volume_cc(), volume, 1e-9 * volume);
   EXPECT_LT((mean - centre).norm() / volume, 1e-9) << "equal parts of a tetrahedron have its centre";
 
+  // About one sample for each cube of the step, also in long elements.
+  TetMesh coarse;
+  coarse.nodes = {Vec3(0, 0, 0), Vec3(60, 0, 0), Vec3(0, 40, 0), Vec3(0, 0, 2)};
+  coarse.tets = {{0, 1, 2, 3}};
+  coarse.tet_region = {0};
+  coarse.regions = {"fat"};
+  const double cubes = 1000.0 * sample_structure(coarse, 0, 0.5).value().volume_cc() / 0.125;
+  EXPECT_GE(static_cast<double>(sample_structure(coarse, 0, 0.5).value().points.size()), cubes);
+  EXPECT_LE(static_cast<double>(sample_structure(coarse, 0, 0.5).value().points.size()), 20.0 * cubes);
+
   LabelImage image;
   image.source = "mask";
   image.size = {10, 10, 4};

@@ -28,10 +28,10 @@ Result<StructureSamples> sample_structure(const Roi& roi, double step_mm);
 /// Errors: no voxel has this label, a step that is not above 0, more than 100 million samples.
 Result<StructureSamples> sample_structure(const LabelImage& image, int label, double step_mm);
 
-/// Samples a region of a mesh: each tetrahedron is divided into equal parts. With the nodes of a deformed mesh, the
-/// samples are those of the deformed structure, and sample k belongs to the same tissue as before.
-/// @param region index of the region in TetMesh::regions @param step_mm [mm] > 0, largest distance of neighbouring
-/// samples
+/// Samples a region of a mesh: each tetrahedron is divided into equal parts, whose number is about that of the cubes of
+/// the step that fill it, whatever its shape.
+/// @param region index of the region in TetMesh::regions @param step_mm [mm] > 0, distance of neighbouring samples in a
+/// tetrahedron of good shape; in a flat one up to three times as much
 /// Errors: no tetrahedron has this region, a step that is not above 0, more than 100 million samples.
 Result<StructureSamples> sample_structure(const TetMesh& mesh, int region, double step_mm);
 

@@ -13,8 +13,8 @@ namespace stylet {
 using PatientInput = std::variant<ContourSet, LabelImage, TetMesh, std::vector<Surface>>;
 
 /// Reads a patient's file, or a directory with one RTSTRUCT or DICOM SEG in it, after detecting its format from its
-/// content, then from its extension. Untrusted files are parsed in a child process with limits on time and memory, so
-/// that a crash of a parser becomes an error.
+/// content, then from its extension. Untrusted files are parsed by the program stylet-reader with limits on time and
+/// memory, so that a crash of a parser becomes an error.
 /// @param skip names of structures and segments that are not needed. A damaged structure among them is ignored instead
 ///   of being an error; segments are treated as by MaskReadOptions::skip
 Result<PatientInput> read_input(const std::filesystem::path& path, const MeshReadOptions& mesh_options = {},

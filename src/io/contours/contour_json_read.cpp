@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reader of contour JSON (docs/formats.md).
+#include "detail/json_text.hpp"
 #include "detail/parsers.hpp"
 #include "detail/text.hpp"
 #include "stylet/core/nearest_name.hpp"
@@ -179,17 +180,9 @@ Result<> check_header(const Json& json, const std::string& source) {
 
 Result<ContourSet> parse_contour_json(const std::filesystem::path& path, std::span<const std::string> skip) {
   const std::string source = path.string();
-  std::ifstream file(path, std::ios::binary);
-  Json json;
-  try {
-    json = Json::parse(file);
-  } catch (const Json::exception& error) {
-    // The library's message names line and column; the error id in brackets before it is removed.
-    const std::string text = error.what();
-    const auto start = text.find("] ");
-    return input_error(source, "not valid JSON: " + (start == std::string::npos ? text : text.substr(start + 2)),
-                       "Correct the file at that place");
-  }
+  const Result<Json> parsed = parse_json_file<Json>(path);
+  if (!parsed) return parsed.error();
+  const Json& json = *parsed;
   Result<> header = check_header(json, source);
   if (!header) return header.error();
 

@@ -3,17 +3,21 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <spawn.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <vector>
 
 namespace stylet::detail {
 
@@ -22,7 +26,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t noise_kept = 8192;
-constexpr char complete_mark = '\x17';  // last byte of a complete result; it is missing if the child died while writing
 
 struct Pipe {
   int read = -1, write = -1;
@@ -102,7 +105,7 @@ void write_all(int file, const char* data, std::size_t size) {
 #endif
   const std::string bytes = work();
   write_all(result, bytes.data(), bytes.size());
-  write_all(result, &complete_mark, 1);
+  write_all(result, &kCompleteMark, 1);
   ::_exit(0);  // skips destructors and exit handlers, which belong to the parent
 }
 
@@ -133,32 +136,17 @@ bool collect(int result, int noise, Clock::time_point deadline, ChildOutcome& ou
   return true;
 }
 
-}  // namespace
-
-ChildOutcome run_in_child(const std::function<std::string()>& work, const ChildLimits& limits) {
+/// Waits for a child and what it answers. @param result, noise this side's ends of its pipes
+ChildOutcome outcome_of(pid_t child, int result, int noise, const ChildLimits& limits) {
   ChildOutcome outcome;
-  Pipe result, noise;
-  if (!result.open() || !noise.open()) {
-    outcome.code = errno;
-    return outcome;
-  }
-  std::fflush(nullptr);  // otherwise the child would inherit and print the content of the buffers
-  const pid_t child = ::fork();
-  if (child < 0) {
-    outcome.code = errno;
-    return outcome;
-  }
-  if (child == 0) be_child(work, limits, result.write, noise.write);
-  result.close_write();
-  noise.close_write();
   const auto deadline =
       Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limits.wall_s));
-  const bool in_time = collect(result.read, noise.read, deadline, outcome);
+  const bool in_time = collect(result, noise, deadline, outcome);
   if (!in_time) ::kill(child, SIGKILL);
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  const bool complete = !outcome.result.empty() && outcome.result.back() == complete_mark;
+  const bool complete = !outcome.result.empty() && outcome.result.back() == kCompleteMark;
   if (!in_time || (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL) && !complete)) {
     outcome.end = ChildEnd::timed_out;  // the hard limit on processor time causes SIGKILL
   } else if (WIFSIGNALED(status)) {
@@ -172,6 +160,100 @@ ChildOutcome run_in_child(const std::function<std::string()>& work, const ChildL
     outcome.result.pop_back();
   }
   return outcome;
+}
+
+ChildOutcome not_started(int reason) { return {.code = reason}; }
+
+/// A file in memory with these bytes, to be read from its beginning; −1 if there is none to be had.
+int file_with(std::string_view bytes) {
+  const int file = ::memfd_create("request", MFD_CLOEXEC);
+  if (file < 0) return -1;
+  for (std::string_view rest = bytes; !rest.empty();) {
+    const ssize_t written = ::write(file, rest.data(), rest.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) {
+      ::close(file);
+      return -1;
+    }
+    rest.remove_prefix(static_cast<std::size_t>(written));
+  }
+  ::lseek(file, 0, SEEK_SET);
+  return file;
+}
+
+/// The environment of this process, in which no library starts threads.
+std::vector<std::string> environment_of_program() {
+  std::vector<std::string> all{"OPENBLAS_NUM_THREADS=1", "OMP_NUM_THREADS=1", "VTK_SMP_BACKEND_IN_USE=Sequential"};
+  const auto is_set = [one_thread = all](std::string_view variable) {
+    return std::ranges::any_of(one_thread, [&](const std::string& set) {
+      return variable.starts_with(std::string_view(set).substr(0, set.find('=') + 1));
+    });
+  };
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    if (!is_set(*variable)) all.emplace_back(*variable);
+  }
+  return all;
+}
+
+/// Starts a program with its three standard streams and the pipe for its answer, no other file and no signal handled or
+/// blocked. @return 0 or an error number
+int spawn(const std::filesystem::path& program, int input, int noise, int answer, pid_t& child) {
+  posix_spawn_file_actions_t files;
+  posix_spawnattr_t attributes;
+  if (const int wrong = posix_spawn_file_actions_init(&files)) return wrong;
+  if (const int wrong = posix_spawnattr_init(&attributes)) {
+    posix_spawn_file_actions_destroy(&files);
+    return wrong;
+  }
+  posix_spawn_file_actions_adddup2(&files, input, STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&files, noise, STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&files, noise, STDERR_FILENO);
+  posix_spawn_file_actions_adddup2(&files, answer, kAnswerPipe);
+  posix_spawn_file_actions_addclosefrom_np(&files, kAnswerPipe + 1);
+  sigset_t all, none;
+  sigfillset(&all);
+  sigemptyset(&none);
+  posix_spawnattr_setsigdefault(&attributes, &all);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
+  std::vector<std::string> environment = environment_of_program();
+  std::vector<char*> variables;
+  for (std::string& variable : environment) variables.push_back(variable.data());
+  variables.push_back(nullptr);
+  std::string name = program.string();
+  std::array<char*, 2> arguments{name.data(), nullptr};
+  const int wrong = posix_spawn(&child, name.c_str(), &files, &attributes, arguments.data(), variables.data());
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&files);
+  return wrong;
+}
+
+}  // namespace
+
+ChildOutcome run_in_child(const std::function<std::string()>& work, const ChildLimits& limits) {
+  Pipe result, noise;
+  if (!result.open() || !noise.open()) return not_started(errno);
+  std::fflush(nullptr);  // otherwise the child would inherit and print the content of the buffers
+  const pid_t child = ::fork();
+  if (child < 0) return not_started(errno);
+  if (child == 0) be_child(work, limits, result.write, noise.write);
+  result.close_write();
+  noise.close_write();
+  return outcome_of(child, result.read, noise.read, limits);
+}
+
+ChildOutcome run_program(const std::filesystem::path& program, std::string_view input, const ChildLimits& limits) {
+  Pipe result, noise;
+  if (!result.open() || !noise.open()) return not_started(errno);
+  const int request = file_with(input);
+  if (request < 0) return not_started(errno);
+  pid_t child = 0;
+  const int wrong = spawn(program, request, noise.write, result.write, child);
+  ::close(request);
+  if (wrong != 0) return not_started(wrong);
+  result.close_write();
+  noise.close_write();
+  return outcome_of(child, result.read, noise.read, limits);
 }
 
 }  // namespace stylet::detail

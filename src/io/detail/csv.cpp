@@ -3,6 +3,7 @@
 
 #include "detail/input_file.hpp"
 #include "detail/text.hpp"
+#include "reading/ask.hpp"
 #include "stylet/core/nearest_name.hpp"
 
 #include <fmt/format.h>
@@ -27,8 +28,12 @@ std::vector<std::string> fields_of(const std::string& line) {
 }  // namespace
 
 Result<CsvLines> read_csv_lines(const std::filesystem::path& path) {
-  constexpr std::size_t longest = 100000;
   if (Result<> file = check_input_file(path); !file) return file.error();
+  return ask(kCsvLines, path);
+}
+
+Result<CsvLines> parse_csv_lines(const std::filesystem::path& path) {
+  constexpr std::size_t longest = 100000;
   CsvLines read;
   std::ifstream stream(path, std::ios::binary);
   std::string line;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "reading/task.hpp"
 #include "stylet/core/result.hpp"
 
 #include <filesystem>
@@ -25,8 +26,14 @@ struct CsvLines {
   std::vector<CsvLine> lines;
 };
 
+void fields(auto& wire, CsvLine& l) { wire(l.number, l.fields); }
+void fields(auto& wire, CsvLines& l) { wire(l.keys, l.lines); }
+
 /// Errors: the file cannot be read; a line that is no text, or no comma-separated values.
 Result<CsvLines> read_csv_lines(const std::filesystem::path& path);
+/// The same in the reading program.
+inline constexpr Task<CsvLines> kCsvLines{"parse_csv_lines"};
+Result<CsvLines> parse_csv_lines(const std::filesystem::path& path);
 
 /// The finite number in a field; empty: it has none.
 std::optional<double> csv_number(const std::string& field);

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-/// Access to DICOM attributes, shared by the DICOM readers. To be called in a child process only.
+/// Access to DICOM attributes, shared by the DICOM readers. To be called in the reading program only.
 namespace stylet::detail {
 
 /// SOP class and modality of a DICOM file.

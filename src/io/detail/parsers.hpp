@@ -6,7 +6,7 @@
 #include "stylet/io/mesh_io.hpp"
 
 /// The parsers behind the public readers. They give untrusted bytes to third-party code, which may print, throw, hang
-/// or crash, and must therefore only be called in a child process (detail/guard.hpp).
+/// or crash, and must therefore only be called in the reading program (reading/ask.hpp).
 namespace stylet::detail {
 
 Result<ContourSet> parse_rtstruct(const std::filesystem::path& path, std::span<const std::string> skip);

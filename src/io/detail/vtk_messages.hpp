@@ -16,7 +16,7 @@ class VtkMessages : public vtkOutputWindow {
   static VtkMessages* New();
   vtkTypeMacro(VtkMessages, vtkOutputWindow);
 
-  /// Replaces VTK's own output window for the rest of the process, which is a child process that reads one file.
+  /// Replaces VTK's own output window for the rest of the process, which reads one file.
   static vtkSmartPointer<VtkMessages> install();
 
   void DisplayErrorText(const char* text) override;

@@ -17,7 +17,7 @@
 #include <type_traits>
 #include <vector>
 
-/// Serialisation of the results of readers, to pass them from a child process to its parent on the same machine.
+/// Serialisation of the results of readers, and of the requests for them, to pass them between programs on one machine.
 namespace stylet::detail {
 
 /// A mesh, with notes on what the reader ignored.
@@ -127,7 +127,7 @@ class WireWriter {
   }
 };
 
-/// Reads serialised values. Throws std::runtime_error if the bytes end too early, because the child died while writing.
+/// Reads serialised values. Throws std::runtime_error if the bytes end too early.
 class WireReader {
  public:
   explicit WireReader(std::string_view bytes) : rest_(bytes) {}

@@ -2,6 +2,7 @@
 #include "dose/json_object.hpp"
 
 #include "detail/input_file.hpp"
+#include "detail/json_text.hpp"
 #include "stylet/core/nearest_name.hpp"
 
 #include <fmt/format.h>
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 namespace stylet::detail {
 
@@ -76,17 +76,9 @@ Result<> JsonObject::take(const std::string& key, std::vector<double>& values) c
 Result<nlohmann::json> read_json(const std::filesystem::path& path, const char* format, int version) {
   const std::string file = path.string();
   if (Result<> readable = check_input_file(path); !readable) return readable.error();
-  nlohmann::json json;
-  try {
-    std::ifstream stream(path, std::ios::binary);
-    json = nlohmann::json::parse(stream);
-  } catch (const nlohmann::json::exception& error) {
-    // The library's message names line and column; the error id in brackets before it is removed.
-    const std::string text = error.what();
-    const auto start = text.find("] ");
-    return input_error(file, "not valid JSON: " + (start == std::string::npos ? text : text.substr(start + 2)),
-                       "Correct the file at that place");
-  }
+  Result<nlohmann::json> parsed = parse_json_file(path);
+  if (!parsed) return parsed;
+  nlohmann::json& json = *parsed;
   if (!json.is_object() || !json.contains("format") || json["format"] != format) {
     return input_error(file, fmt::format("this JSON file does not say \"format\": \"{}\"", format),
                        "Name a file as docs/formats.md describes it");
@@ -97,7 +89,7 @@ Result<nlohmann::json> read_json(const std::filesystem::path& path, const char* 
                                    json.contains("version") ? json["version"].dump() : "(none)", version),
                        fmt::format("Write \"version\": {}, or use the Stylet that wrote the file", version));
   }
-  return json;
+  return parsed;
 }
 
 }  // namespace stylet::detail

@@ -2,9 +2,11 @@
 // Reads patient, study and frame of reference of a DICOM file.
 #include "detail/dicom.hpp"
 #include "detail/file_kind.hpp"
-#include "detail/guard.hpp"
 #include "detail/parsers.hpp"
 #include "detail/patient_attributes.hpp"
+#include "dose/dose_parsers.hpp"
+#include "reading/ask.hpp"
+#include "reading/tasks.hpp"
 #include "stylet/core/printable.hpp"
 #include "stylet/dose/strength_age.hpp"
 #include "stylet/io/patient_record_io.hpp"
@@ -60,7 +62,9 @@ std::string allowed(const std::string& text, RecordText kind) {
   return "";
 }
 
-Result<FoundPatient> parse_patient_record(const fs::path& path) {
+}  // namespace
+
+Result<FoundPatient> detail::parse_patient_record(const fs::path& path) {
   DcmFileFormat format;
   const auto any_kind = [](DcmDataset&) -> Result<> { return Ok{}; };
   if (Result<> loaded = detail::load_dicom(format, path, any_kind, "Name a DICOM file of the patient"); !loaded)
@@ -98,18 +102,16 @@ Result<FoundPatient> parse_patient_record(const fs::path& path) {
   return record;
 }
 
-}  // namespace
-
 Result<FoundPatient> read_patient_record(const fs::path& path) {
   std::error_code code;
   if (fs::is_directory(path, code)) {
-    const Result<std::string> found = detail::guarded<std::string>(path, [&] { return detail::only_patient_in(path); });
+    const Result<std::string> found = detail::ask(detail::kOnlyPatient, path);
     return found ? read_patient_record(*found) : Result<FoundPatient>(found.error());
   }
   const Result<detail::FileKind> kind = detail::identify(path);
   if (!kind) return kind.error();
   if (*kind != detail::FileKind::dicom) return FoundPatient{};
-  return detail::guarded<FoundPatient>(path, [&] { return parse_patient_record(path); });
+  return detail::ask(detail::kPatientRecord, path);
 }
 
 }  // namespace stylet

@@ -3,10 +3,12 @@
 #include "detail/csv.hpp"
 #include "detail/dicom.hpp"
 #include "detail/file_kind.hpp"
-#include "detail/guard.hpp"
+#include "detail/json_text.hpp"
 #include "detail/text.hpp"
 #include "dose/dose_parsers.hpp"
 #include "dose/plan_words.hpp"
+#include "reading/ask.hpp"
+#include "reading/tasks.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -36,14 +38,6 @@ bool has_words(const std::string& line, std::initializer_list<const char*> words
                      [&](const char* word) { return line.find(word) != std::string::npos; });
 }
 
-/// The value of "format" of a JSON file; empty if it has none.
-std::string json_format(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  const nlohmann::json json = nlohmann::json::parse(stream, nullptr, false);
-  return json.is_object() && json.contains("format") && json["format"].is_string() ? json["format"].get<std::string>()
-                                                                                   : std::string();
-}
-
 }  // namespace
 
 DoseFileKind dose_file_kind(const fs::path& path) {
@@ -52,20 +46,28 @@ DoseFileKind dose_file_kind(const fs::path& path) {
   const Result<FileKind> kind = detail::identify(path);
   if (!kind) return DoseFileKind::none;
   if (*kind == FileKind::dicom) {
-    const Result<std::string> modality = detail::guarded<std::string>(
-        path, [&]() -> Result<std::string> { return detail::kind_of_dicom(path).modality; });
+    const Result<std::string> modality = detail::ask(detail::kModality, path);
     if (!modality) return DoseFileKind::none;
     if (*modality == "RTPLAN") return DoseFileKind::plan;
     return *modality == "RTDOSE" ? DoseFileKind::dose_grid : DoseFileKind::none;
   }
   if (*kind == FileKind::contour_json) {
-    const std::string format = json_format(path);
-    if (format == "stylet-plan") return DoseFileKind::plan;
-    return format == "stylet-source" ? DoseFileKind::source_model : DoseFileKind::none;
+    const Result<std::string> format = detail::ask(detail::kJsonFormat, path);
+    if (!format) return DoseFileKind::none;
+    if (*format == "stylet-plan") return DoseFileKind::plan;
+    return *format == "stylet-source" ? DoseFileKind::source_model : DoseFileKind::none;
   }
   const std::string line = header_line(path);
   const bool plan = has_words(line, {"x_mm", "y_mm", "z_mm"}) || has_words(line, {"hole", "retraction_mm", "train"});
   return *kind == FileKind::unknown && plan ? DoseFileKind::plan : DoseFileKind::none;
+}
+
+Result<std::string> detail::format_of_json(const fs::path& path) {
+  const Result<nlohmann::json> json = parse_json_file(path);
+  if (!json) return json.error();
+  return json->is_object() && json->contains("format") && (*json)["format"].is_string()
+             ? (*json)["format"].get<std::string>()
+             : std::string();
 }
 
 Result<DosePlan> detail::parse_plan_text(const fs::path& path) {
@@ -77,12 +79,12 @@ Result<DosePlan> detail::parse_plan_text(const fs::path& path) {
 Result<DosePlan> read_plan(const fs::path& path) {
   const Result<FileKind> kind = detail::identify(path);
   if (!kind) return kind.error();
-  if (*kind == FileKind::dicom) return detail::guarded<DosePlan>(path, [&] { return detail::parse_rtplan(path); });
+  if (*kind == FileKind::dicom) return detail::ask(detail::kRtplan, path);
   if (*kind != FileKind::contour_json && *kind != FileKind::unknown) {
     return input_error(path.string(), "this is " + detail::name_of(*kind) + ", a plan is expected",
                        "Give a DICOM RTPLAN, plan JSON or CSV of seeds");
   }
-  return detail::guarded<DosePlan>(path, [&] { return detail::parse_plan_text(path); });
+  return detail::ask(detail::kPlanText, path);
 }
 
 Result<DoseGrid> read_rtdose(const fs::path& path) {
@@ -92,7 +94,7 @@ Result<DoseGrid> read_rtdose(const fs::path& path) {
     return input_error(path.string(), "this is " + detail::name_of(*kind) + ", a DICOM RTDOSE is expected",
                        "Export the dose as DICOM RTDOSE");
   }
-  return detail::guarded<DoseGrid>(path, [&] { return detail::parse_rtdose(path); });
+  return detail::ask(detail::kRtdose, path);
 }
 
 Result<std::vector<Vec3>> read_points(const fs::path& path) {

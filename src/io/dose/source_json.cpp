@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Source models in JSON (docs/formats.md).
+#include "dose/dose_parsers.hpp"
 #include "dose/json_object.hpp"
+#include "reading/ask.hpp"
+#include "reading/tasks.hpp"
 #include "stylet/io/dose_io.hpp"
 
 #include <fmt/format.h>
@@ -74,6 +77,10 @@ Result<> check_radii(const SourceModel& source, const std::string& file) {
 }  // namespace
 
 Result<SourceModel> read_source_model(const std::filesystem::path& path) {
+  return detail::ask(detail::kSourceModel, path);
+}
+
+Result<SourceModel> detail::parse_source_model(const std::filesystem::path& path) {
   const std::string file = path.string();
   const Result<nlohmann::json> json = detail::read_json(path, "stylet-source", 1);
   if (!json) return json.error();

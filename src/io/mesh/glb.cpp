@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reader of binary glTF 2.0 scenes with VTK. glTF lengths are metres, +y is up (glTF 2.0 specification, 3.4).
+#include "detail/json_text.hpp"
 #include "detail/text.hpp"
 #include "detail/vtk_messages.hpp"
 #include "mesh/surfaces.hpp"
@@ -43,10 +44,10 @@ std::vector<std::string> node_names(const std::filesystem::path& path) {
   if (size > std::filesystem::file_size(path, code)) return {};
   std::string text(size, '\0');
   if (!file.read(text.data(), size)) return {};
-  const auto json = nlohmann::json::parse(text, nullptr, false);
+  const auto json = parse_json(text, path.string());
   std::vector<std::string> names;
-  if (!json.is_object() || !json.contains("nodes") || !json["nodes"].is_array()) return names;
-  for (const auto& node : json["nodes"]) {
+  if (!json || !json->is_object() || !json->contains("nodes") || !(*json)["nodes"].is_array()) return names;
+  for (const auto& node : (*json)["nodes"]) {
     names.push_back(
         node.is_object() && node.contains("name") && node["name"].is_string() ? node["name"].get<std::string>() : "");
   }

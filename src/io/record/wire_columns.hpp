@@ -6,7 +6,7 @@
 
 namespace stylet::detail {
 
-/// The fields of a record that a file has, for the way from the child process to its parent.
+/// The fields of a record that a file has, for the way from the reading program to the one that asked.
 template <record::HasColumns T>
 void fields(auto& wire, T& record) {
   record::each_field<record::kFile>(record, [&](const record::Field&, auto& value) { wire(value); });

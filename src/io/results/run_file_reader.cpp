@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "detail/guard.hpp"
 #include "detail/input_file.hpp"
+#include "reading/ask.hpp"
 #include "stored_run.hpp"
 #include "stylet/io/recording_io.hpp"
 #include "stylet/io/scenario_io.hpp"
@@ -187,8 +187,9 @@ RunRecording checked(StoredRun run, const fs::path& path) {
       run.frames, [&](std::size_t k) { return is_whole_frame(run, k); }, said(&RunEnd::frames), "/frames");
   for (std::size_t k = 0; k < frames.size(); ++k) out.frames.push_back(frame_of(run, k, frames[k]));
   out.events = whole_records(run.events, wholeness(run, run.events), said(&RunEnd::events), "/events");
+  const auto scenario = parse_scenario(run.info.scenario_text, path);
+  demand(!scenario || !scenario->insertions.empty(), "/scenario: it has no insertion");
   if (run.probe_moves.size() > 0) {
-    const auto scenario = parse_scenario(run.info.scenario_text, path);
     const ProbeMove planned{0.0, scenario ? scenario->probe : ProbeSettings{}};
     out.probe_moves =
         whole_records(run.probe_moves, wholeness(run, run.probe_moves), said(&RunEnd::probe_moves), "/probe", planned);
@@ -206,11 +207,7 @@ RunRecording checked(StoredRun run, const fs::path& path) {
 
 /// Reads and checks a file once. Throws Changed as checked() does.
 Result<RunRecording> read_once(const fs::path& path) {
-  Result<StoredRun> stored = [&] {
-    const h5::LibraryTurn turn;  // no other thread may be in HDF5 when the child process is created
-    return detail::guarded<StoredRun>(
-        path, [&] { return parse_run_file(path); }, kGiveARecording);
-  }();
+  Result<StoredRun> stored = detail::ask(kRunFile, path);
   if (!stored) return stored.error();
   if (auto sound = check_mesh(stored->mesh, path.string() + ", /mesh"); !sound) return sound.error();
   return checked(std::move(*stored), path);

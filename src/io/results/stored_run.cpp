@@ -104,6 +104,7 @@ StoredRun read_all(hid_t file) {
 }  // namespace
 
 Result<StoredRun> parse_run_file(const fs::path& path) {
+  const h5::LibraryTurn turn;
   try {
     return read_all(h5::open_growing_file(path.c_str()));
   } catch (const h5::Failure& e) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "reading/task.hpp"
 #include "record/wire_columns.hpp"
 #include "run_file_format.hpp"
 #include "stylet/core/result.hpp"
@@ -41,11 +42,12 @@ struct StoredRun {
   record::Rows<RunEnd> end;  ///< empty while the run goes on and if it was killed
 };
 
-/// Reads a run.h5 completely. To be called in a child process (detail/guard.hpp) while the parent holds an
-/// h5::LibraryTurn, because HDF5 1.10 crashes on some damaged files.
+/// Reads a run.h5 completely. To be called in the reading program (reading/ask.hpp), because HDF5 1.10 crashes on some
+/// damaged files.
 Result<StoredRun> parse_run_file(const std::filesystem::path& path);
+inline constexpr detail::Task<StoredRun> kRunFile{"parse_run_file", kGiveARecording};
 
-// Serialisation from the child process to its parent (detail/wire.hpp).
+// Serialisation from the reading program to the one that asked (detail/wire.hpp).
 void fields(auto& wire, StoredPlan& p) {
   record::each_field<record::kFile>(p.head, [&](const record::Field&, auto& value) { wire(value); });
   wire(p.needles, p.seeds);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "summary_json.hpp"
 
+#include "detail/json_text.hpp"
 #include "probe_json.hpp"
 #include "record/json.hpp"
 #include "record/summary_columns.hpp"
@@ -20,8 +21,10 @@ Result<Summary> parse_summary_json(std::string_view text, const std::string& whe
   const auto refuse = [&](const std::string& reason) {
     return input_error(where, "not a summary of a run: " + reason, "Give a file that this version of stylet wrote");
   };
+  const Result<Json> parsed = detail::parse_json<Json>(text, where);
+  if (!parsed) return refuse(parsed.error().what);
+  const Json& json = *parsed;
   try {
-    const Json json = Json::parse(text);
     Summary summary;
     record::read_json(json, summary);
     if (json.contains("in_place")) record::read_json(json.at("in_place"), summary.in_place.emplace());

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scenario/toml_document.hpp"
 
-#include "detail/guard.hpp"
 #include "detail/text.hpp"
+#include "reading/ask.hpp"
 #include "scenario/toml_precheck.hpp"
 
 #include <fmt/format.h>
@@ -120,7 +120,9 @@ Error syntax_error(const std::string& where, std::string what, const std::string
                      cure_for(readable ? line : ""));
 }
 
-Result<std::vector<TomlItem>> parse_unguarded(std::string_view text, const std::string& source) {
+}  // namespace
+
+Result<std::vector<TomlItem>> parse_toml_text(std::string_view text, const std::string& source) {
   const toml::parse_result parsed = toml::parse(text);
   if (!parsed) {
     const toml::parse_error& error = parsed.error();
@@ -137,15 +139,9 @@ Result<std::vector<TomlItem>> parse_unguarded(std::string_view text, const std::
   return items;
 }
 
-}  // namespace
-
-// Serialisation from the child process to its parent (detail/wire.hpp).
-void fields(auto& wire, ScenarioValue& v) { wire(v.type, v.number, v.boolean, v.text, v.numbers, v.texts); }
-void fields(auto& wire, TomlItem& i) { wire(i.kind, i.path, i.value, i.what, i.line, i.column); }
-
 Result<std::vector<TomlItem>> parse_toml(std::string_view text, const std::string& source) {
   if (Result<> safe = precheck_toml(text, source); !safe) return safe.error();
-  return guarded<std::vector<TomlItem>>(source, [&] { return parse_unguarded(text, source); });
+  return ask(kToml, source, std::string(text));
 }
 
 std::string joined(const std::vector<std::string>& path) {

@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "reading/task.hpp"
 #include "stylet/core/result.hpp"
 #include "stylet/sim/scenario.hpp"
 
 #include <string>
 #include <string_view>
 #include <vector>
+
+namespace stylet {
+
+void fields(auto& wire, ScenarioValue& v) { wire(v.type, v.number, v.boolean, v.text, v.numbers, v.texts); }
+
+}  // namespace stylet
 
 namespace stylet::detail {
 
@@ -29,6 +36,12 @@ struct TomlItem {
 /// Syntax errors name line and column and quote the line.
 /// @param source file name for messages
 Result<std::vector<TomlItem>> parse_toml(std::string_view text, const std::string& source);
+
+/// The same in the reading program, for a text that precheck_toml() lets pass; its argument is the text.
+inline constexpr Task<std::vector<TomlItem>, std::string> kToml{"parse_toml_text"};
+Result<std::vector<TomlItem>> parse_toml_text(std::string_view text, const std::string& source);
+
+void fields(auto& wire, TomlItem& i) { wire(i.kind, i.path, i.value, i.what, i.line, i.column); }
 
 /// Joins a path: {"insertion", "[0]", "hole"} → "insertion[0].hole".
 std::string joined(const std::vector<std::string>& path);

@@ -12,8 +12,7 @@ namespace stylet::detail {
 /// (Debian 12) violates its own preconditions, with undefined behaviour or a failed assertion, for a non-ASCII
 /// character, such as an editor's curly quotation mark, outside of quotes or after a continued line; for a table header
 /// that does not begin with a name; and for several malformed values (github.com/marzer/tomlplusplus issues 190 and
-/// 294, pull request 301). Errors that this check does not find can only crash the child process in which the parser
-/// runs.
+/// 294, pull request 301). Errors that this check does not find can only crash the reading program.
 /// @param source file name for the message
 Result<> precheck_toml(std::string_view text, const std::string& source);
 

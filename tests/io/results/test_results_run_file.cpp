@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tests that run.h5 can be read, also while the writer is at work or after it was killed.
 #include "run_files.hpp"
+#include "stylet/io/scenario_io.hpp"
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -221,6 +222,17 @@ TEST(RunFile, foreign_and_damaged_files_are_refused_with_a_message) {
   const std::string bytes = content_of(whole);
   std::ofstream(half, std::ios::binary) << bytes.substr(0, bytes.size() / 2);
   ASSERT_FALSE(read_recording(half).ok());
+}
+
+TEST(RunFile, whose_scenario_has_no_insertion_is_refused) {
+  const Folder folder;
+  SyntheticRun run = small_run();
+  run.info.scenario_text = "[patient]\nsource = \"phantom\"\n\n[plan]\nfile = \"plan.csv\"\n";
+  (void)value_of(parse_scenario(run.info.scenario_text, "scenario"));  // it is a scenario
+  write_run_file(folder / "run.h5", run, true);
+  const auto read = read_recording(folder / "run.h5");
+  ASSERT_FALSE(read.ok());
+  EXPECT_NE(read.error().message().find("no insertion"), std::string::npos);
 }
 
 TEST(RunFile, with_any_bit_changed_is_refused_or_reads_as_it_was_written) {

@@ -125,6 +125,8 @@ test('the picture follows the needle, and a frozen one does not', async () => {
   const canvas = page.locator('#image canvas:visible');
   await page.getByRole('button', { name: 'True position' }).click();
   await page.mouse.move(5, 5);
+  // The rate lies over the picture, and counts down for a second.
+  await until('the rate of pictures to rest', () => page.locator('.picture-rate').allTextContents(), (all) => all.join('') === '');
   let frozen = await canvas.screenshot();
   await until('marks that are drawn', () => canvas.screenshot(), (now) => {
     const same = now.equals(frozen);

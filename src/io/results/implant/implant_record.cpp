@@ -2,12 +2,12 @@
 // From an implant to its run.h5 and back.
 #include "stylet/io/implant_record_io.hpp"
 
-#include "detail/guard.hpp"
 #include "detail/input_file.hpp"
 #include "detail/whole_file.hpp"
 #include "dose/dvh_table.hpp"
 #include "implant/stored_implant.hpp"
 #include "output_folder.hpp"
+#include "reading/ask.hpp"
 #include "stylet/core/version.hpp"
 #include "stylet/io/scenario_io.hpp"
 
@@ -64,11 +64,7 @@ Result<> write_implant_record(ImplantRecord record, const fs::path& path) {
 Result<ImplantRecord> read_implant_record(const fs::path& path) {
   if (Result<> readable = detail::check_input_file(path); !readable)
     return input_error(path.string(), readable.error().what, kGiveAnImplant);
-  Result<ImplantRecord> record = [&] {
-    const h5::LibraryTurn turn;  // no other thread may be in HDF5 when the child process is created
-    return detail::guarded<ImplantRecord>(
-        path, [&] { return parse_implant_file(path); }, kGiveAnImplant);
-  }();
+  Result<ImplantRecord> record = detail::ask(kImplantFile, path);
   if (!record) return record;
   if (auto sound = check_mesh(record->mesh, path.string() + ", /mesh"); !sound) return sound.error();
   return record;
@@ -76,11 +72,7 @@ Result<ImplantRecord> read_implant_record(const fs::path& path) {
 
 bool is_implant_record(const fs::path& path) {
   if (!detail::check_input_file(path)) return false;
-  const h5::LibraryTurn turn;
-  const Result<bool> is = detail::guarded<bool>(path, [&]() -> Result<bool> {
-    const h5::Handle file = h5::open_growing_file(path.c_str());
-    return h5::has_attribute(file, "format") && h5::read_text_attribute(file, "format") == kImplantFileFormat;
-  });
+  const Result<bool> is = detail::ask(kIsImplantFile, path);
   return is && *is;
 }
 

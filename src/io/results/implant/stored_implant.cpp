@@ -296,10 +296,21 @@ void write_stored_implant(const char* path, ImplantRecord record) {
 }
 
 Result<ImplantRecord> parse_implant_file(const std::filesystem::path& path) {
+  const h5::LibraryTurn turn;
   try {
     return whole_implant_in(h5::open_growing_file(path.c_str()));
   } catch (const h5::Failure& e) {
     return input_error(path.string(), e.what(), kGiveAnImplant);
+  }
+}
+
+Result<bool> is_implant_file(const std::filesystem::path& path) {
+  const h5::LibraryTurn turn;
+  try {
+    const h5::Handle file = h5::open_growing_file(path.c_str());
+    return h5::has_attribute(file, "format") && h5::read_text_attribute(file, "format") == kImplantFileFormat;
+  } catch (const h5::Failure&) {
+    return false;  // no file of HDF5
   }
 }
 

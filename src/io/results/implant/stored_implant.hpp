@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "reading/task.hpp"
 #include "record/wire_columns.hpp"
 #include "run_file_format.hpp"
 #include "stylet/io/implant_record_io.hpp"
@@ -22,12 +23,18 @@ inline constexpr const char* kGiveAnImplant =
 /// Writes the record into a new file. Throws h5::Failure.
 void write_stored_implant(const char* path, ImplantRecord record);
 
-/// Reads a whole file and compares its content with its digest. To be called in a child process, as parse_run_file().
+/// Reads a whole file and compares its content with its digest. To be called in the reading program, as
+/// parse_run_file().
 Result<ImplantRecord> parse_implant_file(const std::filesystem::path& path);
+inline constexpr detail::Task<ImplantRecord> kImplantFile{"parse_implant_file", kGiveAnImplant};
+
+/// Whether a file says that it is the recording of an implant. To be called in the reading program.
+Result<bool> is_implant_file(const std::filesystem::path& path);
+inline constexpr detail::Task<bool> kIsImplantFile{"is_implant_file", kGiveAnImplant};
 
 }  // namespace stylet::results
 
-// The fields that the file keeps, for the way from the child process to its parent (detail/wire.hpp).
+// The fields that the file keeps, for the way from the reading program to the one that asked (detail/wire.hpp).
 namespace stylet {
 
 void fields(auto& wire, NeedleShape& s) {

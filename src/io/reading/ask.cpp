@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "detail/guard.hpp"
+#include "reading/ask.hpp"
 
 #include "detail/file_kind.hpp"
 #include "detail/input_file.hpp"
 #include "detail/text.hpp"
+#include "reading/find_program.hpp"
+#include "stylet/core/version.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -132,20 +135,7 @@ int entries_of(const fs::path& folder) {
   return entries;
 }
 
-}  // namespace
-
-ChildLimits limits_for(const fs::path& path) {
-  std::error_code code;
-  const bool regular = fs::is_regular_file(path, code);
-  const Megabytes size = regular ? megabytes_of(path) : Megabytes{};
-  ChildLimits limits;
-  limits.cpu_s = kBase_s + kPacked_s * size.packed + std::min(kUnpacked_s * size.unpacked, kMostUnpacked_s);
-  if (fs::is_directory(path, code)) limits.cpu_s += kEntry_s * entries_of(path);
-  limits.wall_s = 30.0 + 3.0 * limits.cpu_s;  // generous, since the machine may be busy
-  limits.memory_bytes += static_cast<std::size_t>(40e6 * size.packed);
-  return limits;
-}
-
+/// The error for a parser that ended without an answer.
 Error died(const fs::path& path, const ChildOutcome& outcome, const ChildLimits& limits, const char* cure) {
   const std::string words = last_words(outcome.noise);
   switch (outcome.end) {
@@ -167,6 +157,26 @@ Error died(const fs::path& path, const ChildOutcome& outcome, const ChildLimits&
   return input_error(path.string(), fmt::format("the parser gave up (exit status {}){}", outcome.code, words), cure);
 }
 
+/// The answers inside of the reading program; empty outside of it.
+std::function<std::string(std::string_view, std::string_view)>& here() {
+  static std::function<std::string(std::string_view, std::string_view)> answer;
+  return answer;
+}
+
+}  // namespace
+
+ChildLimits limits_for(const fs::path& path) {
+  std::error_code code;
+  const bool regular = fs::is_regular_file(path, code);
+  const Megabytes size = regular ? megabytes_of(path) : Megabytes{};
+  ChildLimits limits;
+  limits.cpu_s = kBase_s + kPacked_s * size.packed + std::min(kUnpacked_s * size.unpacked, kMostUnpacked_s);
+  if (fs::is_directory(path, code)) limits.cpu_s += kEntry_s * entries_of(path);
+  limits.wall_s = 30.0 + 3.0 * limits.cpu_s;  // generous, since the machine may be busy
+  limits.memory_bytes += static_cast<std::size_t>(40e6 * size.packed);
+  return limits;
+}
+
 Error threw(const fs::path& path, const char* what, const char* cure) {
   return input_error(path.string(), fmt::format("the parser gave up: {}", what), cure);
 }
@@ -175,6 +185,26 @@ Error out_of_memory(const fs::path& path) {
   return input_error(
       path.string(), "reading it needs more memory than a file of its size should",
       "Export the file again if a size in its header is wrong, or crop it if it is too large for this machine");
+}
+
+void answer_here(std::function<std::string(std::string_view, std::string_view)> answer) { here() = std::move(answer); }
+
+Result<std::string> answer_bytes(std::string_view task, const fs::path& path, std::string arguments, const char* cure) {
+  if (here()) return here()(task, arguments);
+  const Result<fs::path> program = find_reading_program();
+  if (!program) return program.error();
+  const ChildLimits limits = limits_for(path);
+  ReadingRequest request{.version = version(),
+                         .parent = ::getpid(),
+                         .cpu_s = limits.cpu_s,
+                         .bytes = limits.memory_bytes,
+                         .task = std::string(task),
+                         .arguments = std::move(arguments)};
+  WireWriter wire;
+  wire(request);
+  ChildOutcome outcome = run_program(*program, wire.bytes, limits);
+  if (outcome.end != ChildEnd::finished) return died(path, outcome, limits, cure);
+  return std::move(outcome.result);
 }
 
 }  // namespace stylet::detail
