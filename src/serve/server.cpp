@@ -13,6 +13,9 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/thread_pool.hpp>
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <thread>
 
 namespace stylet::serve {
@@ -27,6 +30,7 @@ namespace {
 constexpr auto kRequestTime = std::chrono::seconds(20);
 constexpr auto kAcceptAgain = std::chrono::milliseconds(200);
 constexpr std::size_t kRequestBytes = 16 * 1024;
+constexpr int kNiceReading = 10;  // lower priority than the loop and its recording; the reading program inherits it
 
 }  // namespace
 
@@ -183,6 +187,7 @@ std::string Server::url() const {
 void Server::start() {
   Parts& p = *parts_;
   p.accept();
+  asio::post(p.readers, [] { (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceReading); });
   p.thread = std::thread([&p] { p.io.run(); });
   p.hall.session().start();
 }
