@@ -32,6 +32,21 @@ class BadInput(InFolder):
                      "mesh.msh", "mesh.mesh", "mesh.ele", "s.stl", "s.ply", "s.obj", "s.vtp", "s.glb", "case"):
             self.refused_by_both(self.write(name, noise))
 
+    def test_json_nested_without_end(self):
+        deep = "[" * 88000 + "]" * 88000
+        for name, begin in (("plain.json", ""), ("case.json", '{"format": "stylet-contours", "version": 1, "a": '),
+                            ("plan.json", '{"format": "stylet-plan", "version": 1, "sources": '),
+                            ("source.json", '{"format": "stylet-source", "version": 1, "g": ')):
+            self.write(name, begin + deep + ("}" if begin else ""))
+            self.refuse("info", name, says=[name])
+            self.refuse("mesh", name, "-o", "out/model.vtu", says=[name])
+            self.refuse("dose", name, name, "-o", "out/dose", says=[name])
+        self.write("implant.toml", '[patient]\nsource = "phantom"\n[plan]\nfile = "plan.json"\n')
+        self.refuse("implant", "implant.toml", "-o", "out/implant", says=["plan.json"])
+        self.write("source.toml", '[patient]\nsource = "phantom"\n[plan]\nfile = "x.csv"\nsource = "source.json"\n')
+        self.write("x.csv", "x_mm,y_mm,z_mm,strength_U\n0,0,0,0.5\n")
+        self.refuse("implant", "source.toml", "-o", "out/implant", says=["source.json"])
+
     def test_files_cut_short(self):
         self.succeed("phantom", "-o", "case")
         samples.nifti_mask(self.folder / "mask.nii.gz")
