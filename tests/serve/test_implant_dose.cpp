@@ -107,8 +107,9 @@ TEST(ImplantDose, the_grid_has_the_dose_in_percent_of_the_prescribed_dose) {
   }
   const auto expected = evaluate_dose(implant->plan, implant->source, implant->structures, options);
   ASSERT_TRUE(expected);
+  const double largest = 65535 * grid.unit_percent;  // stands for all larger doses
   for (std::size_t k = 0; k < shown.size(); ++k)
-    EXPECT_NEAR(shown[k], 5.0 * expected->point_Gy[k], 0.1 + 0.002 * shown[k]) << "percent of 20 Gy";
+    EXPECT_NEAR(shown[k], std::min(5.0 * expected->point_Gy[k], largest), 0.1 + 0.002 * shown[k]) << "percent of 20 Gy";
 }
 
 TEST(ImplantDose, needs_a_target) {
