@@ -31,6 +31,7 @@ struct ServeArguments {
   int port = 8080;
   std::string token;
   bool no_token = false;
+  bool keep_token = false;
   std::string recordings = "out/live";
   double keep_GB = 5.0;
   std::string models = ModelCache::users_folder().string();
@@ -190,7 +191,7 @@ Result<> run_serve(const ServeArguments& arguments, Console& console) {
   settings.port = static_cast<std::uint16_t>(arguments.port);
   settings.token = arguments.token;
   settings.asks_for_token = !arguments.no_token;
-  if (const fs::path cache = ModelCache::users_folder(); !cache.empty())
+  if (const fs::path cache = ModelCache::users_folder(); arguments.keep_token && !cache.empty())
     settings.token_file = cache.parent_path() / "live_token";
   settings.session.recordings = arguments.recordings;
   settings.session.keep_bytes = keep_bytes(arguments.keep_GB);
@@ -203,6 +204,7 @@ Result<> run_serve(const ServeArguments& arguments, Console& console) {
   if (arguments.igtl.hand == "igtl") settings.session.runner.late_after_s = kIgtlLateAfter_s;
   const std::string recordings = settings.session.recordings.string();
   auto server = need(serve::Server::open(std::move(settings)));
+  if (igtl.accept_token) igtl.accept_token(server->token());
   server->start();
   console.say(fmt::format("Open {} in a browser. Ctrl-C ends it.", server->url()));
   const std::string limit =
@@ -240,12 +242,16 @@ Command add_serve_command(CLI::App& program) {
          "Address to listen on; the default serves this machine only, 0.0.0.0 every network of this machine")
       ->capture_default_str();
   option(app, "--token", arguments->token, "TEXT",
-         "Token that viewers must know (default: a random token); safer in the environment variable, which "
+         "Token that viewers must know (default: a random one at each start); safer in the environment variable, which "
          "other users of this machine cannot read")
       ->envname("STYLET_TOKEN");
   app->add_flag("--no-token", arguments->no_token,
                 "Let every user of this machine open the page without a token, for example where nobody else can log "
                 "in");
+  app->add_flag(
+      "--keep-token", arguments->keep_token,
+      "Use the same random token at each start, so that an open page connects to the next server; it is kept in "
+      "~/.cache/stylet/live_token");
   option(app, "-o,--output", arguments->recordings, "OUT/", "Folder for the recordings, one for each insertion")
       ->capture_default_str();
   option(app, "--keep", arguments->keep_GB, "GB",

@@ -35,6 +35,7 @@ class LinkCompanion final : public serve::Companion {
   void show(const serve::LiveImage& image) override;
   [[nodiscard]] std::optional<Pose> probe_pose() override { return link_->probe_pose(); }
 
+  void accept_token(const std::string& token) { link_->accept_token(token); }
   [[nodiscard]] int port() const { return link_->state().port; }
 
  private:
@@ -191,8 +192,8 @@ Result<IgtlCompanion> open_igtl(const IgtlArguments& arguments) {
   made.said = fmt::format("OpenIGTLink: {} {}{}.", listens ? "listening at" : "connecting to", place,
                           has_hand ? "; the needle follows " + settings.input : "");
   if (listens && !this_machine_only(settings.host))
-    made.warning = fmt::format("OpenIGTLink has no password: everyone who can connect to {} sees the simulation{}.",
-                               place, has_hand ? " and can move the needle" : "");
+    made.warning = fmt::format("OpenIGTLink is not encrypted: everyone in between can read what passes {}.", place);
+  made.accept_token = [companion](const std::string& token) { companion->accept_token(token); };
   made.companion = std::move(companion);
   return made;
 }

@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -26,7 +27,9 @@ struct IgtlCompanion {
   std::shared_ptr<serve::Companion> companion;  ///< null: OpenIGTLink is not used
   std::string said;                             ///< its address and role, for the terminal
   std::string warning;                          ///< warning about access from the network; may be empty
-  Json json;                                    ///< its address and role as JSON
+  /// Lets programs of other users and machines in that give this token; empty if OpenIGTLink is not used.
+  std::function<void(const std::string&)> accept_token;
+  Json json;  ///< its address and role as JSON
 };
 
 /// RunnerSettings::late_after_s when the hand's poses come over OpenIGTLink: poses at 30 to 60 Hz do not count as late.

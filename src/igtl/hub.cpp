@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hub.hpp"
 
+#include "stylet/core/secret.hpp"
+
 #include <fmt/format.h>
 
 namespace stylet::igtl {
@@ -8,7 +10,7 @@ namespace stylet::igtl {
 Hub::Hub(const LinkSettings& settings)
     : settings_(settings), input_(cut_name(settings.input)), probe_(cut_name(settings.probe_input)) {}
 
-void Hub::add(Connection::Socket socket, std::function<void()> on_end) {
+void Hub::add(Connection::Socket socket, std::function<void()> on_end, Trust trust) {
   const ConnectionId id = ++last_id_;
   auto connection =
       std::make_shared<Connection>(std::move(socket),
@@ -22,14 +24,42 @@ void Hub::add(Connection::Socket socket, std::function<void()> on_end) {
                                    },
                                    settings_.checksums);
   connections_.emplace(id, connection);
+  if (trust == Trust::stranger) {
+    strangers_.emplace(id, Connection::Clock::now());
+  } else {
+    welcome(*connection);
+  }
+  connection->start();
+}
+
+void Hub::welcome(Connection& connection) {
   ++counted_.connected;
   for (std::size_t k = 0; k < Connection::kContents; ++k)
-    if (greeting_[k]) offer(*connection, static_cast<Connection::Content>(k), greeting_[k]);
-  connection->start();
+    if (greeting_[k]) offer(connection, static_cast<Connection::Content>(k), greeting_[k]);
+}
+
+std::string Hub::why_not(Trust trust) const {
+  if (trust == Trust::stranger && token_.empty())
+    return "a connection of another user or from another machine was refused, since there is no token";
+  if (trust == Trust::stranger && strangers_.size() >= kMostStrangers)
+    return "too many connections have not given the token, so another one was refused";
+  if (known() >= static_cast<std::size_t>(settings_.max_connections))
+    return "there are max_connections connections already, so another one was refused";
+  return {};
+}
+
+/// Only the token counts; programs may send other things before it.
+void Hub::hear_stranger(ConnectionId from, const Incoming& message) {
+  if (message.kind != Incoming::Kind::token || !is_same_secret(message.text, token_)) return;
+  const auto connection = connections_.find(from);
+  if (connection == connections_.end() || known() >= static_cast<std::size_t>(settings_.max_connections)) return;
+  strangers_.erase(from);
+  welcome(*connection->second);
 }
 
 /// Poses of the probe go to the probe alone; the state of a sender concerns both.
 void Hub::hear(ConnectionId from, const Incoming& message) {
+  if (strangers_.contains(from)) return hear_stranger(from, message);
   const auto now = PoseInput::Clock::now();
   const bool of_probe = message.kind == Incoming::Kind::pose && message.name == probe_.name();
   if (of_probe || message.kind == Incoming::Kind::status) probe_.hear(from, message, now);
@@ -42,15 +72,16 @@ void Hub::hear(ConnectionId from, const Incoming& message) {
     counted_.unused = fmt::format("{} '{}'", message.type, printable(message.name));
 }
 
-void Hub::turn_away() {
+void Hub::turn_away(const std::string& why) {
   ++counted_.turned_away;
-  counted_.problem = "there are max_connections connections already, so another one was refused";
+  counted_.problem = why;
 }
 
 void Hub::ended(ConnectionId id, const std::optional<Error>& garbage) {
   input_.closed(id);
   probe_.closed(id);
   connections_.erase(id);
+  strangers_.erase(id);
   if (!garbage) return;
   ++counted_.garbage;
   counted_.problem = fmt::format("a connection was closed because it sent {}. {}", garbage->what, garbage->cure);
@@ -62,7 +93,8 @@ void Hub::offer(Connection& to, Connection::Content content, const Connection::S
 }
 
 void Hub::send(Connection::Content content, const Connection::Shared& bytes) {
-  for (const auto& [id, connection] : connections_) offer(*connection, content, bytes);
+  for (const auto& [id, connection] : connections_)
+    if (!strangers_.contains(id)) offer(*connection, content, bytes);
 }
 
 void Hub::give_up(Connection::Clock::time_point now) {
@@ -71,6 +103,13 @@ void Hub::give_up(Connection::Clock::time_point now) {
   for (const auto& [id, connection] : connections_) {
     Connection::Clock::time_point since;
     if (connection->sending_since(since) && now - since > limit) stuck.push_back(connection);
+  }
+  std::vector<std::shared_ptr<Connection>> silent;
+  for (const auto& [id, since] : strangers_)
+    if (now - since > kTokenTime) silent.push_back(connections_.at(id));
+  for (const auto& connection : silent) {
+    turn_away("a connection of another user or from another machine was closed, since it has not given the token");
+    connection->close();
   }
   for (const auto& connection : stuck) {
     ++counted_.given_up;
@@ -90,7 +129,7 @@ void Hub::set_port(int port) {
 
 void Hub::show_state() {
   const PoseInput::Counts& c = input_.counts();
-  counted_.connections = static_cast<int>(connections_.size());
+  counted_.connections = static_cast<int>(known());
   counted_.tracked = input_.tracked();
   counted_.poses = c.poses;
   counted_.unusable = c.unusable;

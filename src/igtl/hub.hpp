@@ -13,18 +13,28 @@ namespace stylet::igtl {
 /// All connections of a link and their counters. All functions except state() must be called in the link's thread.
 class Hub {
  public:
+  static constexpr std::chrono::seconds kTokenTime{5};
+  static constexpr std::size_t kMostStrangers = 4;
+
   explicit Hub(const LinkSettings& settings);
 
-  /// Takes a connection over. @param ended called once when the connection has ended; may be empty
-  void add(Connection::Socket socket, std::function<void()> ended);
-  [[nodiscard]] bool full() const { return connections_.size() >= static_cast<std::size_t>(settings_.max_connections); }
+  /// Whether a connection needs the token: processes of this user on this machine do not.
+  enum class Trust { known, stranger };
+  /// Takes a connection over. Nothing is sent to a stranger, and nothing that it sends is used, until it has given the
+  /// token; it has kTokenTime for that.
+  /// @param ended called once when the connection has ended; may be empty
+  void add(Connection::Socket socket, std::function<void()> ended, Trust trust = Trust::known);
+  /// Why such a connection cannot be taken over, in words; empty if it can.
+  [[nodiscard]] std::string why_not(Trust trust) const;
+  /// Sets the token that strangers have to give; while it is empty no stranger is taken over.
+  void accept_token(std::string token) { token_ = std::move(token); }
   [[nodiscard]] bool empty() const { return connections_.empty(); }
-  void turn_away();
+  void turn_away(const std::string& why);
 
   void send(Connection::Content content, const Connection::Shared& bytes);
   /// Sets the message that every new connection is sent first, for one kind of content.
   void greet_with(Connection::Content content, Connection::Shared bytes) { greeting_.at(content) = std::move(bytes); }
-  /// Closes the connections that have accepted no data for longer than give_up_s.
+  /// Closes the connections that have accepted no data for longer than give_up_s, and strangers without a token.
   void give_up(Connection::Clock::time_point now);
 
   /// Sets the channel that receives the handle's poses.
@@ -43,12 +53,17 @@ class Hub {
  private:
   void offer(Connection& to, Connection::Content content, const Connection::Shared& bytes);
   void hear(ConnectionId from, const Incoming& message);
+  void hear_stranger(ConnectionId from, const Incoming& message);
+  void welcome(Connection& connection);
   void ended(ConnectionId id, const std::optional<Error>& garbage);
+  [[nodiscard]] std::size_t known() const { return connections_.size() - strangers_.size(); }
 
   const LinkSettings& settings_;
   PoseInput input_;
   PoseInput probe_;
   std::map<ConnectionId, std::shared_ptr<Connection>> connections_;
+  std::map<ConnectionId, Connection::Clock::time_point> strangers_;  ///< since when they are connected
+  std::string token_;
   std::array<Connection::Shared, Connection::kContents> greeting_;
   ConnectionId last_id_ = 0;
   LinkState counted_;

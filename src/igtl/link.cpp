@@ -68,6 +68,10 @@ std::unique_ptr<Device> Link::device() {
   return std::make_unique<TrackedDevice>("OpenIGTLink " + parts_->settings.input, std::move(channel));
 }
 
+void Link::accept_token(const std::string& token) {
+  boost::asio::post(parts_->io, [&hub = parts_->hub, token] { hub.accept_token(token); });
+}
+
 void Link::publish(const Picture& picture) { parts_->sender.publish(picture); }
 
 Result<> Link::publish_surface(Surface surface) {

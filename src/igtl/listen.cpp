@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "own_process.hpp"
 #include "transport.hpp"
 
 #include <fmt/format.h>
@@ -13,17 +14,19 @@ namespace {
 
 class Listener final : public Transport {
  public:
-  Listener(tcp::acceptor acceptor, asio::io_context& io, Hub& hub)
-      : acceptor_(std::move(acceptor)), pause_(io), hub_(hub) {}
+  Listener(tcp::acceptor acceptor, asio::io_context& io, const LinkSettings& settings, Hub& hub)
+      : acceptor_(std::move(acceptor)), settings_(settings), pause_(io), hub_(hub) {}
 
   void start() override {
     acceptor_.async_accept([this](const error_code& error, tcp::socket socket) {
       if (!acceptor_.is_open()) return;
       if (error) return rest(error.message());
-      if (hub_.full()) {
-        hub_.turn_away();  // the socket closes here
+      const bool is_known = settings_.trust_own_processes && is_own_process(socket);
+      const Hub::Trust trust = is_known ? Hub::Trust::known : Hub::Trust::stranger;
+      if (const std::string why_not = hub_.why_not(trust); !why_not.empty()) {
+        hub_.turn_away(why_not);  // the socket closes here
       } else {
-        hub_.add(std::move(socket), {});
+        hub_.add(std::move(socket), {}, trust);
       }
       start();
     });
@@ -45,6 +48,7 @@ class Listener final : public Transport {
   }
 
   tcp::acceptor acceptor_;
+  const LinkSettings& settings_;
   asio::steady_timer pause_;
   Hub& hub_;
 };
@@ -69,7 +73,7 @@ Result<std::unique_ptr<Transport>> listen(asio::io_context& io, const LinkSettin
     return failure(where, error.message(), "Give an address of this machine and a port that you may open");
   }
   hub.set_port(acceptor.local_endpoint(error).port());
-  return std::unique_ptr<Transport>(std::make_unique<Listener>(std::move(acceptor), io, hub));
+  return std::unique_ptr<Transport>(std::make_unique<Listener>(std::move(acceptor), io, settings, hub));
 }
 
 }  // namespace stylet::igtl

@@ -89,6 +89,7 @@ Result<> MessageReader::read_header() {
   message_.type = type;
   if (type == "TRANSFORM" || type == "POSITION") message_.kind = Incoming::Kind::pose;
   if (type == "STATUS") message_.kind = Incoming::Kind::status;
+  if (type == "STRING" && name == kTokenName) message_.kind = Incoming::Kind::token;
   message_.name = name;
   keep_ = message_.kind != Incoming::Kind::other;
   if (keep_ && h.body_size > kKept) return garbage(fmt::format("a {} of {} bytes", type, std::uint64_t{h.body_size}));
@@ -123,6 +124,11 @@ Result<> MessageReader::read_body(Incoming& message) {
       return garbage(fmt::format("a TRANSFORM of {} bytes instead of {}", content.size(), IGTL_TRANSFORM_SIZE));
     std::memcpy(message.matrix.data(), content.data(), IGTL_TRANSFORM_SIZE);
     igtl_transform_convert_byte_order(message.matrix.data());
+  } else if (message.kind == Incoming::Kind::token) {
+    constexpr std::size_t before = 4;  // the encoding, and the length of the text
+    if (content.size() < before || content.size() != before + big16(content.data() + 2))
+      return garbage(fmt::format("a STRING of {} bytes", content.size()));
+    message.text.assign(content.begin() + before, content.end());
   } else {
     if (content.size() < 30) return garbage(fmt::format("a STATUS of {} bytes", content.size()));
     message.code = static_cast<std::uint16_t>(big16(content.data()));

@@ -15,12 +15,16 @@ namespace stylet::igtl {
 
 /// The parts of a received message that a link uses.
 struct Incoming {
-  enum class Kind { pose, status, other } kind = Kind::other;
+  enum class Kind { pose, status, token, other } kind = Kind::other;
   std::string type;  ///< as sent, such as "TRANSFORM" or "POSITION"
   std::string name;
   RasMatrix matrix{};      ///< of a pose
   std::uint16_t code = 0;  ///< of a STATUS; 1 means OK
+  std::string text;        ///< of a token
 };
+
+/// Name of the STRING with which a program gives the token.
+inline constexpr const char* kTokenName = "Token";
 
 /// A received name for people: bytes beyond printable ASCII become '?'.
 std::string printable(std::string name);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "kept_meshes.hpp"
 
+#include "io/detail/private_files.hpp"
 #include "io/detail/whole_file.hpp"
 #include "io/detail/wire.hpp"
 #include "io/model/digest.hpp"
@@ -89,9 +90,9 @@ Result<MeshedAnatomy> kept_or_made(const auto& input, const MeshOptions& options
   if (path && made) {
     detail::WireWriter wire;
     wire(*made);
-    std::error_code none;
-    fs::create_directories(path->parent_path(), none);
+    detail::make_private_folder(path->parent_path());
     (void)detail::write_whole(*path, [&](const fs::path& to) -> Result<> {
+      detail::make_private_file(to);
       std::ofstream(to, std::ios::binary) << sha256(wire.bytes) << wire.bytes;
       return Ok{};
     });

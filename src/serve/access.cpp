@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "access.hpp"
 
+#include "stylet/core/secret.hpp"
+
 #include <fmt/format.h>
 
 #include <random>
@@ -22,15 +24,6 @@ bool is_loopback_name(std::string_view host) {
   return name == "localhost" || name == "127.0.0.1" || name == "[::1]";
 }
 
-/// Takes as long whether the first or the last character differs.
-bool same(std::string_view a, std::string_view b) {
-  if (a.size() != b.size()) return false;
-  unsigned differ = 0;
-  for (std::size_t k = 0; k < a.size(); ++k)
-    differ |= static_cast<unsigned>(static_cast<unsigned char>(a[k]) ^ static_cast<unsigned char>(b[k]));
-  return differ == 0;
-}
-
 }  // namespace
 
 Access::Verdict Access::check_open(std::string_view host) const {
@@ -44,7 +37,7 @@ Access::Verdict Access::check(std::string_view target, std::string_view host, st
     const auto scheme = origin.find("://");
     if (scheme == std::string_view::npos || origin.substr(scheme + 3) != host) return Verdict::foreign;
   }
-  if (!token_.empty() && !same(query_value(target, "token"), token_)) return Verdict::no_token;
+  if (!token_.empty() && !is_same_secret(query_value(target, "token"), token_)) return Verdict::no_token;
   return Verdict::granted;
 }
 

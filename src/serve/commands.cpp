@@ -29,6 +29,9 @@ constexpr std::array kCommands{
         false),
     row(release, "release", Desk::hall, While::any, {},
         "gives the needle to the page that has asked longest, or to nobody; or withdraws the wish for it.", false),
+    row(go_on, "go_on", Desk::hall, While::any, {},
+        "lets the hand of the page that holds the needle move it again after the server has stopped it "
+        "(`hand_stopped` in the status). Hands that came before are ignored."),
     row(hole, "hole", Desk::open_case, While::live, {argument("hole", kText)},
         "puts the needle at the start of an insertion through this hole of the template."),
     row(insertion, "insertion", Desk::open_case, While::live, {argument("index", kNumber)},

@@ -14,6 +14,7 @@ struct Command {
   enum class Do {
     take,
     release,
+    go_on,
     hole,
     insertion,
     needle,

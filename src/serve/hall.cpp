@@ -16,7 +16,26 @@ void Hall::to_each(const std::function<void(Viewer&)>& send) const {
   for (const auto& [id, viewer] : std::map(viewers_)) send(*viewer);
 }
 
+/// Lets the watch of the holder take its turns.
+void Hall::wait_turn() {
+  turn_.expires_after(
+      std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(HolderWatch::kTurn_s)));
+  turn_.async_wait([this](boost::system::error_code error) {
+    if (error) return;
+    watch_.watch(holding_.holder());
+    if (watch_.turn()) stop_silent_hand();
+    wait_turn();
+  });
+}
+
+/// The needle stays where it is, since its holder could not see where it goes.
+void Hall::stop_silent_hand() {
+  session_.let_go();
+  say_status();
+}
+
 void Hall::close() {
+  turn_.cancel();
   to_each([](Viewer& viewer) { viewer.close(); });
 }
 
@@ -78,11 +97,16 @@ void Hall::left(std::uint64_t id) {
   say_status();
 }
 
+void Hall::heard(Viewer& viewer, const wire::Seen& /*seen*/) { watch_.hear(viewer.id()); }
+
 void Hall::heard(Viewer& viewer, const HandTarget& hand) {
-  if (holding_.holder() == viewer.id()) session_.aim(hand);
+  watch_.hear(viewer.id());
+  watch_.watch(holding_.holder());
+  if (holding_.holder() == viewer.id() && !watch_.is_stopped()) session_.aim(hand);
 }
 
 void Hall::heard(Viewer& viewer, const Command& command) {
+  watch_.hear(viewer.id());
   if (command.what == Command::Do::take) {
     holding_.take(viewer.id());
     return say_status();
@@ -94,14 +118,21 @@ void Hall::heard(Viewer& viewer, const Command& command) {
   }
   if (row_of(command.what).needs_needle && holding_.holder() != viewer.id())
     return viewer.send(parcel_of(Notice{"another viewer holds the needle", "Ask for the needle"}));
+  if (command.what == Command::Do::go_on) {
+    watch_.go_on();
+    return say_status();
+  }
   if (!session_.ask({command, viewer.id()}))
     viewer.send(parcel_of(Notice{"too many requests are waiting", "Try again"}));
 }
 
 void Hall::say_status() {
   OwnStatus own{.held = holding_.holder() != 0, .asking = holding_.asking(), .viewers = viewers_.size()};
+  watch_.watch(holding_.holder());
   to_each([&](Viewer& viewer) {
     own.you_hold = holding_.holder() == viewer.id();
+    own.hand_stopped = own.you_hold && watch_.is_stopped();
+    own.lag_s = viewer.lag_s();
     own.you_ask = holding_.asks(viewer.id());
     own.dropped_messages = viewer.dropped_messages();
     own.skipped_frames = viewer.skipped_frames();

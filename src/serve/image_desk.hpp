@@ -54,6 +54,7 @@ class ImageDesk {
   /// Whether a companion wants pictures. It gets those that the pages look at; while they look at none, ultrasound of
   /// the scenario's array.
   void serve(bool companion);
+  [[nodiscard]] bool serves_companion() const { return is_serving_; }
   /// Whether pictures are made.
   [[nodiscard]] bool is_busy() const { return shown_ != ShownImage::none || is_serving_; }
   /// ImageTables::set()

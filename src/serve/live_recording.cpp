@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "live_recording.hpp"
 
-#include "private_files.hpp"
 #include "scene_points.hpp"
 #include "wall_clock.hpp"
+
+#include "io/detail/private_files.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,15 +21,15 @@ constexpr double kShareForFrames = 0.05;  ///< share of this thread's time for f
 
 void LiveRecording::begin(const std::filesystem::path& folder, const RunInfo& info, const TetMesh& mesh,
                           const RecordedPlan* plan) {
-  make_private_folder(folder.parent_path());
-  make_private_folder(folder);
+  detail::make_private_folder(folder.parent_path());
+  detail::make_private_folder(folder);
   in_use_ = FolderLock(folder, FolderLock::Kind::shared);  // first, so that nobody removes the new recording
   auto recorder = RunRecorder::open(folder / "run.h5", info, mesh, plan);
   if (!recorder) {
     problem_ = recorder.error().message();
     return;
   }
-  make_private(folder / "run.h5");
+  detail::make_private(folder / "run.h5");
   recorder_ = std::move(*recorder);
 }
 

@@ -40,6 +40,8 @@ class LiveRoom {
   [[nodiscard]] bool has_needle() const { return run_ != nullptr; }
   /// Whether there is a needle and it is not set aside.
   [[nodiscard]] bool is_live() const { return run_ && !is_aside_; }
+  /// Whether it is live and not paused.
+  [[nodiscard]] bool is_running() const { return is_live() && !told_.paused; }
   /// Whether a seed is being dropped or its dose computed; then the result comes soon.
   [[nodiscard]] bool is_busy() const;
   void set_field(const std::shared_ptr<const DisplayField>& field);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "live_run.hpp"
 
+#include "wall_clock.hpp"
+#include "wire.hpp"
+
 #include "stylet/io/scenario_io.hpp"
 
 #include <fmt/format.h>
@@ -8,6 +11,12 @@
 #include <array>
 
 namespace stylet::serve {
+
+namespace {
+
+constexpr std::size_t kSamplesAtRest = 4;  ///< samples of the curve in a picture that says nothing new
+
+}  // namespace
 
 LiveRun::LiveRun(const OpenModel& open, std::size_t insertion, double recorded_frames_per_s)
     : model_(open.model),
@@ -82,11 +91,14 @@ void LiveRun::pump(const std::function<void(const LiveEvent&)>& tell) {
 std::shared_ptr<const LiveFrame> LiveRun::picture(bool whole_curve) {
   const bool fresh = runner_->fetch_snapshot();
   seen_ = seen_ || fresh;
-  if (fresh) view_.owe();
+  if (fresh) {
+    news_.owe();
+    view_.owe();
+  }
   // While paused there is no fresh snapshot, but its displacement may still be due, and a viewer that has just
   // connected needs the picture again.
   const bool due = view_.is_due();
-  if (!fresh && !whole_curve && !due) return nullptr;
+  if (!news_.is_owed() && !whole_curve && !due) return nullptr;
   const Snapshot& s = runner_->snapshot();
   const std::span<const TissueForce> forces = tissue_forces(s, force_room_);
   if (view_.has_field()) {
@@ -112,8 +124,13 @@ std::shared_ptr<const LiveFrame> LiveRun::picture(bool whole_curve) {
   frame->contacts.assign(s.contacts.begin(), s.contacts.begin() + s.contact_count);
   if (due) view_.compute(forces, seeds_);
   frame->left_out_N = view_.left_out_N();
-  if (due || (view_.has_field() && whole_curve)) set_displacement(*frame, view_.shown());
+  const bool has_moved = view_.has_moved();
+  const FrameNews::Verdict verdict = news_.judge(*frame, has_moved || whole_curve, wall_clock_s());
+  if (verdict == FrameNews::Verdict::nothing) return nullptr;
+  frame->is_news = verdict == FrameNews::Verdict::news;
+  if (has_moved || (view_.has_field() && whole_curve)) set_displacement(*frame, view_.tell());
   frame->curve = curve_.take(whole_curve);
+  if (!frame->is_news) wire::thin(frame->curve, kSamplesAtRest);
   if (const std::int64_t lost = s.counters.dropped_steps; lost > 0)
     recording_.lacks(fmt::format("{} steps were not recorded: the disk or this machine is too slow", lost));
   return frame;

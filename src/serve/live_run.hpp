@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "frame_news.hpp"
 #include "hand.hpp"
 #include "live_recording.hpp"
 #include "live_view.hpp"
@@ -39,8 +40,8 @@ class LiveRun {
   /// Fetches the new steps and events, records them and passes the events to `tell`. Must be called before the runner's
   /// buffer of steps is full; otherwise steps are lost.
   void pump(const std::function<void(const LiveEvent&)>& tell);
-  /// The newest picture; null if nothing is new since the last call. The displacement may follow later, in another
-  /// picture of the same moment.
+  /// The newest picture; null if it would show nothing new, but for a few each second as a sign of life (FrameNews).
+  /// The displacement may follow later, in another picture of the same moment, and is left out where nothing has moved.
   /// @param whole_curve the picture holds all samples of the curve instead of the new ones, and the newest displacement
   std::shared_ptr<const LiveFrame> picture(bool whole_curve);
   /// Passes the state that the last picture shows to a companion, and its displacement if there is a new one.
@@ -80,6 +81,7 @@ class LiveRun {
   RecordedFrames frames_;
   TissueView view_;
   LiveCurve curve_;
+  FrameNews news_;
   bool seen_ = false;                    ///< a snapshot has been fetched
   std::vector<TissueForce> force_room_;  ///< buffer for forces
   std::vector<Step> step_room_;          ///< buffer for steps

@@ -11,6 +11,7 @@ namespace stylet::serve {
 namespace {
 
 constexpr std::size_t kCurve = 8000;  ///< samples of the curve kept for viewers that connect later
+constexpr double kMoved_mm = 0.02;    ///< smallest displacement that pages are told of: a tenth of a pixel
 constexpr double kShareOfTime = 0.3;  ///< share of this thread's time for displacements that pages show
 
 }  // namespace
@@ -25,6 +26,7 @@ TissueView::TissueView(const OpenModel& open)
 void TissueView::set_field(std::shared_ptr<const DisplayField> field) {
   field_ = std::move(field);
   load_ = field_->make_load();
+  told_.resize(3, 0);
 }
 
 bool TissueView::is_due() const { return load_ && is_owed_ && wall_clock_s() >= after_s_; }
@@ -37,9 +39,15 @@ void TissueView::compute(std::span<const TissueForce> forces, SeedFollower& seed
   near_.add(shown_);
   seeds.follow(*field_, *load_);
   is_owed_ = false;
+  is_computed_ = true;
   is_anew_ = true;
   const double after = wall_clock_s();
   after_s_ = after + (after - before) * (1.0 / kShareOfTime - 1.0);
+}
+
+bool TissueView::has_moved() const {
+  if (!is_computed_ || shown_.size() == 0) return false;
+  return told_.cols() != shown_.cols() || !((shown_ - told_).cwiseAbs().maxCoeff() < static_cast<float>(kMoved_mm));
 }
 
 double TissueView::left_out_N() const { return load_ ? std::max(load_->left_out_N(), near_.left_out_N()) : 0.0; }

@@ -36,6 +36,10 @@ class TissueView {
   void compute(std::span<const TissueForce> forces, SeedFollower& seeds);
   /// [mm] (3 × points of the scene)
   [[nodiscard]] const Eigen::Matrix3Xf& shown() const { return shown_; }
+  /// Whether pages would see that it differs from what they were last told.
+  [[nodiscard]] bool has_moved() const;
+  /// shown(), of which pages are told now.
+  const Eigen::Matrix3Xf& tell() { return told_ = shown_; }
   /// Whether it has changed since the last call.
   [[nodiscard]] bool take_anew() { return std::exchange(is_anew_, false); }
   /// The larger of the forces [N] whose far field, and whose near field, is not shown.
@@ -47,7 +51,9 @@ class TissueView {
   std::optional<DisplayField::Load> load_;  ///< set if there is a field
   DisplayNearField near_;                   ///< near field at the points of the scene
   Eigen::Matrix3Xf shown_;
+  Eigen::Matrix3Xf told_;  ///< what pages know; empty: nothing
   bool is_owed_ = false;
+  bool is_computed_ = false;  ///< at least once
   bool is_anew_ = false;
   double after_s_ = 0.0;  ///< wall-clock time after which the next displacement may be computed
 };

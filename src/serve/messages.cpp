@@ -119,6 +119,8 @@ Parcel parcel_of(const SessionStatus& s, const OwnStatus& own) {
                                                 {"rights", s.loop.rights}}},
                                               {"you_hold", own.you_hold},
                                               {"you_ask", own.you_ask},
+                                              {"hand_stopped", own.hand_stopped},
+                                              {"lag_s", own.lag_s ? Json(*own.lag_s) : Json(nullptr)},
                                               {"dropped_messages", own.dropped_messages},
                                               {"skipped_frames", own.skipped_frames}});
 }

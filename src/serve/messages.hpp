@@ -6,6 +6,7 @@
 #include "stylet/core/result.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -49,6 +50,8 @@ struct OwnStatus {
   std::size_t asking = 0;   ///< viewers that ask for it
   std::size_t viewers = 0;  ///< connected viewers
   bool you_hold = false, you_ask = false;
+  bool hand_stopped = false;      ///< it holds the needle, and its hand was stopped because it was silent
+  std::optional<double> lag_s{};  ///< Outbox::lag_s()
   std::int64_t dropped_messages = 0, skipped_frames = 0;
 };
 Parcel parcel_of(const SessionStatus& status, const OwnStatus& own);

@@ -2,6 +2,7 @@
 #include "pages.hpp"
 
 #include "assets.hpp"
+#include "attachment.hpp"
 
 #include "stylet/io/run_recorder.hpp"
 #include "stylet/sim/recorded_steps.hpp"
@@ -63,14 +64,14 @@ HttpResponse Pages::recordings(const HttpRequest& request) const {
 /// The force curve of a recording. @param path NAME/forces.csv
 HttpResponse Pages::recording(const HttpRequest& request, std::string_view path) const {
   const auto slash = path.find('/');
-  if (slash == std::string_view::npos || path.substr(slash) != "/forces.csv")
+  const auto name = percent_decoded(path.substr(0, slash));
+  if (slash == std::string_view::npos || path.substr(slash) != "/forces.csv" || !name)
     return refusal(request, http::status::not_found, "There is no such page.");
-  const std::string name(path.substr(0, slash));
-  const auto run = shelf_.read(name);
+  const auto run = shelf_.read(*name);
   if (!run) return refusal(request, http::status::not_found, run.error().message());
   HttpResponse r =
       response(request, http::status::ok, "text/csv; charset=utf-8", forces_csv_text(with_ends_of_rests(run->steps)));
-  r.set(http::field::content_disposition, "attachment; filename=\"" + name + ".csv\"");
+  r.set(http::field::content_disposition, attachment(*name + ".csv"));
   return r;
 }
 

@@ -24,6 +24,7 @@ void PictureRoom::open(const ImageSubject& patient) {
   if (now == patient_) return;
   patient_ = std::move(now);
   desk_.open(patient);
+  wants_moment_ = true;
 }
 
 void PictureRoom::serve_companion(bool is_live) {

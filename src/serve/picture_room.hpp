@@ -19,7 +19,9 @@ class PictureRoom {
   void open(const ImageSubject& patient);
   /// Lets a companion have pictures and move the probe. Like the rest of what it sees, pictures are of the live needle.
   void serve_companion(bool is_live);
-  /// Whether a moment is wanted at once, since pictures have been asked for.
+  /// Whether a companion gets pictures, which come at their rate also while nothing moves.
+  [[nodiscard]] bool serves_companion() const { return desk_.serves_companion(); }
+  /// Whether a moment is wanted at once, since pictures have been asked for or are of another patient.
   [[nodiscard]] bool wants_moment() { return std::exchange(wants_moment_, false); }
   /// The desk that makes the pictures, for moments and the place of the probe.
   [[nodiscard]] ImageDesk& desk() { return desk_; }

@@ -2,6 +2,7 @@
 #include "stylet/serve/server.hpp"
 
 #include "access.hpp"
+#include "door.hpp"
 #include "hall.hpp"
 #include "kept_token.hpp"
 #include "pages.hpp"
@@ -28,6 +29,8 @@ using asio::ip::tcp;
 namespace {
 
 constexpr auto kRequestTime = std::chrono::seconds(20);
+constexpr auto kRefusedTime = std::chrono::seconds(2);
+constexpr std::size_t kRefused = 32;  ///< most connections at once that are told that there are too many
 constexpr auto kAcceptAgain = std::chrono::milliseconds(200);
 constexpr std::size_t kRequestBytes = 16 * 1024;
 constexpr int kNiceReading = 10;  // lower priority than the loop and its recording; the reading program inherits it
@@ -43,7 +46,8 @@ struct Server::Parts {
         acceptor(io),
         retry(io),
         pages(access, Shelf(settings.session.recordings, settings.session.archive)),
-        hall(io, settings.session) {}
+        door(settings.connections, settings.connections_per_address),
+        hall(io, settings.session, settings.hand_silence_s) {}
 
   ServerSettings settings;
   Access access;
@@ -51,10 +55,19 @@ struct Server::Parts {
   tcp::acceptor acceptor;
   asio::steady_timer retry;
   Pages pages;
+  Door door;
+  Door refused_door{kRefused, kRefused};
   std::uint64_t last_id = 0;
   Hall hall;
   std::thread thread;
   asio::thread_pool readers{1};  ///< last member, so that it ends before the members that its work uses
+
+  /// A connection that is not a viewer yet.
+  struct Caller {
+    beast::tcp_stream stream;
+    std::shared_ptr<const void> pass;
+    bool is_refused = false;  ///< it only hears that there are too many connections
+  };
 
   void accept() {
     acceptor.async_accept([this](beast::error_code error, tcp::socket socket) {
@@ -62,9 +75,18 @@ struct Server::Parts {
       if (error) return accept_later();
       beast::error_code ignored;
       socket.set_option(tcp::no_delay(true), ignored);
-      read_request(std::make_shared<beast::tcp_stream>(std::move(socket)));
+      let_in(std::move(socket));
       accept();
     });
+  }
+  void let_in(tcp::socket socket) {
+    beast::error_code gone;
+    const std::string address = socket.remote_endpoint(gone).address().to_string();
+    auto pass = door.enter(address);
+    const bool is_refused = pass == nullptr;
+    if (is_refused) pass = refused_door.enter(address);
+    if (pass)
+      read_request(std::make_shared<Caller>(Caller{beast::tcp_stream(std::move(socket)), std::move(pass), is_refused}));
   }
   /// Accepts again after a pause. Used after an error that would recur at once, such as too many open files.
   void accept_later() {
@@ -77,39 +99,49 @@ struct Server::Parts {
     beast::flat_buffer buffer{kRequestBytes};
     http::request_parser<http::string_body> parser;
   };
-  void read_request(const std::shared_ptr<beast::tcp_stream>& stream) {
+  void read_request(const std::shared_ptr<Caller>& caller) {
     auto reading = std::make_shared<Reading>();
     reading->parser.body_limit(kRequestBytes);
-    stream->expires_after(kRequestTime);
-    http::async_read(*stream, reading->buffer, reading->parser,
-                     [this, stream, reading](beast::error_code error, std::size_t /*bytes*/) {
-                       if (!error) answer(stream, reading->parser.get());
+    caller->stream.expires_after(caller->is_refused ? kRefusedTime : kRequestTime);
+    http::async_read(caller->stream, reading->buffer, reading->parser,
+                     [this, caller, reading](beast::error_code error, std::size_t /*bytes*/) {
+                       if (!error) answer(caller, reading->parser.get());
                      });
   }
-  void answer(const std::shared_ptr<beast::tcp_stream>& stream, const HttpRequest& request) {
-    if (beast::websocket::is_upgrade(request) && path_of(target(request)) == "/live" &&
-        pages.verdict(request) == Access::Verdict::granted && hall.size() < settings.viewers) {
-      std::make_shared<Viewer>(++last_id, std::move(*stream), hall, settings.silence_s)->accept(request);
-      return;
+  void answer(const std::shared_ptr<Caller>& caller, const HttpRequest& request) {
+    if (caller->is_refused)
+      return refuse(caller, request, "There are too many connections to this server. Close some of its pages first.");
+    if (path_of(target(request)) == "/live" && pages.verdict(request) == Access::Verdict::granted) {
+      if (hall.size() >= settings.viewers)
+        return refuse(caller, request, "There are too many viewers already. Wait until one has closed the page.");
+      if (beast::websocket::is_upgrade(request)) {
+        std::make_shared<Viewer>(++last_id, std::move(caller->stream), std::move(caller->pass), hall,
+                                 settings.silence_s)
+            ->accept(request);
+        return;
+      }
     }
-    if (beast::websocket::is_upgrade(request) && hall.size() >= settings.viewers)
-      return write(stream,
-                   Pages::refusal(request, http::status::service_unavailable, "There are too many viewers already."));
     // Reading a recording takes a while, so another thread does it; here all viewers would have to wait.
-    stream->expires_never();
-    asio::post(readers, [this, stream, request] {
-      asio::post(io, [this, stream, response = pages.answer(request)] { write(stream, response); });
+    caller->stream.expires_never();
+    asio::post(readers, [this, caller, request] {
+      asio::post(io, [this, caller, response = pages.answer(request)] { write(caller, response); });
     });
   }
-  void write(const std::shared_ptr<beast::tcp_stream>& stream, HttpResponse made) {
+  void refuse(const std::shared_ptr<Caller>& caller, const HttpRequest& request, const std::string& why) {
+    HttpResponse response = Pages::refusal(request, http::status::service_unavailable, why);
+    response.keep_alive(false);
+    write(caller, std::move(response));
+  }
+  void write(const std::shared_ptr<Caller>& caller, HttpResponse made) {
     auto response = std::make_shared<HttpResponse>(std::move(made));
     const bool again = response->keep_alive();
-    stream->expires_after(kRequestTime);
-    http::async_write(*stream, *response, [this, stream, response, again](beast::error_code error, std::size_t /*n*/) {
-      if (!error && again) return read_request(stream);
-      beast::error_code ignored;
-      stream->socket().shutdown(tcp::socket::shutdown_send, ignored);
-    });
+    caller->stream.expires_after(kRequestTime);
+    http::async_write(caller->stream, *response,
+                      [this, caller, response, again](beast::error_code error, std::size_t /*n*/) {
+                        if (!error && again) return read_request(caller);
+                        beast::error_code ignored;
+                        caller->stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
+                      });
   }
 };
 
@@ -133,7 +165,7 @@ Result<Access> access_for(const ServerSettings& settings, bool is_loopback) {
                        fmt::format("the token '{}' has characters that a web address cannot hold", given),
                        "Use letters, digits and -._~ only");
   if (!given.empty()) return Access(given, Access::Names::any);
-  return is_loopback ? Access(kept_token(settings.token_file)) : Access(random_token(), Access::Names::any);
+  return Access(kept_token(settings.token_file), is_loopback ? Access::Names::loopback : Access::Names::any);
 }
 
 }  // namespace
@@ -173,6 +205,8 @@ std::uint16_t Server::port() const {
   return parts_->acceptor.local_endpoint(ignored).port();
 }
 
+const std::string& Server::token() const { return parts_->access.token(); }
+
 std::string Server::url() const {
   beast::error_code ignored;
   const auto address = parts_->acceptor.local_endpoint(ignored).address();
@@ -187,6 +221,7 @@ std::string Server::url() const {
 void Server::start() {
   Parts& p = *parts_;
   p.accept();
+  p.hall.start();
   asio::post(p.readers, [] { (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceReading); });
   p.thread = std::thread([&p] { p.io.run(); });
   p.hall.session().start();

@@ -69,9 +69,9 @@ bool Session::show(const Reply& reply) {
   bool has_picture = false;
   for (const Message& message : reply.show) {
     audience_.show(message);
-    if (!std::holds_alternative<std::shared_ptr<const LiveFrame>>(message)) continue;
-    has_picture = true;
-    pass_moment();
+    const auto* frame = std::get_if<std::shared_ptr<const LiveFrame>>(&message);
+    has_picture = has_picture || frame != nullptr;
+    if (frame != nullptr ? (*frame)->is_news : std::holds_alternative<LiveSeeds>(message)) pass_moment();
   }
   if (reply.is_urgent) next_status_ = {};
   return has_picture;
@@ -169,10 +169,9 @@ Reply Session::ask_room(const CommandRow& row, const Request& request) {
   return {};
 }
 
-/// Records where the probe is, and passes the newest moment on if pictures of it are made.
+/// Passes the newest moment on if pictures of it are made.
 void Session::pass_moment() {
   ImageDesk& desk = pictures_.desk();
-  live_.record_probe(desk.probe());
   if (!desk.is_busy()) return;
   if (is_replaying_) {
     auto [moment, probe] = replay_.moment();
@@ -191,10 +190,12 @@ void Session::tick(double dt_s) {
   if (const auto map = case_.map_news(is_replaying_)) audience_.show(*map);
   show(live_.follow_implant());
   pictures_.serve_companion(live_.is_live());
-  if (pictures_.wants_moment()) pass_moment();
+  const bool is_streaming = pictures_.serves_companion() && live_.is_running();
+  if (pictures_.wants_moment() || is_streaming) pass_moment();
   show(pictures_.news(live_.is_live()));
   const bool is_whole = is_awaited_.exchange(false);
   if (!show(is_replaying_ ? replay_.tick(dt_s, is_whole) : live_.tick(is_whole)) && is_whole) is_awaited_ = true;
+  live_.record_probe(pictures_.desk().probe());
   if (SessionClock::now() >= next_status_) say_status();
 }
 

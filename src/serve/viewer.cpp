@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "viewer.hpp"
 
+#include "wall_clock.hpp"
+
 #include <boost/asio/buffer.hpp>
 
 #include <variant>
@@ -16,8 +18,10 @@ constexpr std::int64_t kMostDropped = 4000;  ///< after this many dropped messag
 
 }  // namespace
 
-Viewer::Viewer(std::uint64_t id, beast::tcp_stream stream, ViewerDesk& desk, double silence_s)
+Viewer::Viewer(std::uint64_t id, beast::tcp_stream stream, std::shared_ptr<const void> pass, ViewerDesk& desk,
+               double silence_s)
     : id_(id),
+      pass_(std::move(pass)),
       socket_(std::move(stream)),
       desk_(desk),
       silence_(
@@ -75,7 +79,9 @@ void Viewer::hear(std::span<const std::byte> message) {
     ++dropped_;
     return;
   }
+  if (const auto* seen = std::get_if<wire::Seen>(&*decoded)) outbox_.seen(*seen, wall_clock_s());
   std::visit([this](const auto& what) { desk_.heard(*this, what); }, *decoded);
+  write();
 }
 
 void Viewer::send(const Parcel& parcel) {
@@ -84,7 +90,7 @@ void Viewer::send(const Parcel& parcel) {
 }
 
 void Viewer::send(const std::shared_ptr<const LiveFrame>& frame) {
-  outbox_.put(frame);
+  outbox_.put(frame, wall_clock_s());
   write();
 }
 

@@ -23,13 +23,16 @@ class ViewerDesk {
   virtual void left(std::uint64_t id) = 0;
   virtual void heard(Viewer& viewer, const HandTarget& hand) = 0;
   virtual void heard(Viewer& viewer, const Command& command) = 0;
+  virtual void heard(Viewer& viewer, const wire::Seen& seen) = 0;
 };
 
 /// The connection to one page, over a WebSocket. Everything happens in the server's thread.
 class Viewer : public std::enable_shared_from_this<Viewer> {
  public:
+  /// @param pass counts as an open connection as long as the viewer lives (Door)
   /// @param silence_s [s] a page that has neither sent a message nor answered a ping for this time is disconnected
-  Viewer(std::uint64_t id, boost::beast::tcp_stream stream, ViewerDesk& desk, double silence_s);
+  Viewer(std::uint64_t id, boost::beast::tcp_stream stream, std::shared_ptr<const void> pass, ViewerDesk& desk,
+         double silence_s);
   void accept(const HttpRequest& request);
   void close();
 
@@ -39,6 +42,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   [[nodiscard]] std::uint64_t id() const { return id_; }
   [[nodiscard]] std::int64_t dropped_messages() const { return dropped_; }
   [[nodiscard]] std::int64_t skipped_frames() const { return outbox_.skipped_frames(); }
+  [[nodiscard]] std::optional<double> lag_s() const { return outbox_.lag_s(); }
 
  private:
   void read();
@@ -47,6 +51,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   void end();
 
   std::uint64_t id_;
+  std::shared_ptr<const void> pass_;
   boost::beast::websocket::stream<boost::beast::tcp_stream> socket_;
   ViewerDesk& desk_;
   std::chrono::steady_clock::duration silence_;

@@ -97,6 +97,21 @@ std::optional<Command> decode_command(std::string_view text) {
   return command;
 }
 
+/// The displacement of a frame in the smallest unit in which the largest fits 8 bits.
+struct CoarseDisplacement {
+  double unit_mm;
+  std::vector<std::int8_t> values;
+
+  explicit CoarseDisplacement(const LiveFrame& f) : values(f.displacement.size()) {
+    int most = 0;
+    for (const std::int16_t u : f.displacement) most = std::max(most, std::abs(int{u}));
+    const double units = std::max(1.0, most / 127.0);
+    unit_mm = units * f.unit_mm;
+    std::ranges::transform(f.displacement, values.begin(),
+                           [units](std::int16_t u) { return static_cast<std::int8_t>(std::lround(u / units)); });
+  }
+};
+
 }  // namespace
 
 Bytes encode(const Scene& scene, std::uint32_t number) {
@@ -110,13 +125,15 @@ Bytes encode(const Scene& scene, std::uint32_t number) {
   return out.take();
 }
 
-Bytes encode(const LiveFrame& f, std::span<const Step> curve, bool whole_curve, std::uint32_t number) {
+Bytes encode(const LiveFrame& f, std::span<const Step> curve, bool whole_curve, std::uint32_t number, bool coarse) {
+  const auto eight_bits = coarse ? std::make_optional<CoarseDisplacement>(f) : std::nullopt;
   Writer out(Kind::frame, number,
              256 + 4 * f.centreline.size() + 32 * f.contacts.size() + 32 * curve.size() + 2 * f.displacement.size());
   out.put(f.time_s);
   std::uint32_t bits = f.bits & ~static_cast<std::uint32_t>(LiveFrame::whole_curve);
   if (!f.displacement.empty()) bits |= LiveFrame::displaced;
   if (whole_curve) bits |= LiveFrame::whole_curve;
+  if (coarse) bits |= LiveFrame::coarse;
   const Step& step = f.step;
   const auto tip_state = static_cast<std::uint32_t>(step.tip_state);
   const auto sticking = static_cast<std::uint32_t>(step.sticking);
@@ -127,7 +144,8 @@ Bytes encode(const LiveFrame& f, std::span<const Step> curve, bool whole_curve, 
   for (const Vec3& v : {step.torque_Nmm, step.tip_mm, step.base.origin}) out.put_floats(v.x(), v.y(), v.z());
   const Eigen::Quaterniond& q = step.base.rotation;
   out.put_floats(q.w(), q.x(), q.y(), q.z());
-  out.put_floats(f.roll_deg, f.tilt_left_deg, f.tilt_anterior_deg, f.left_out_N, f.unit_mm);
+  out.put_floats(f.roll_deg, f.tilt_left_deg, f.tilt_anterior_deg, f.left_out_N,
+                 eight_bits ? eight_bits->unit_mm : f.unit_mm);
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const TipError tip = f.tip_error.value_or(TipError{Vec3::Constant(kNone), kNone});
   out.put_floats(tip.mm.x(), tip.mm.y(), tip.mm.z(), tip.base_depth_mm);
@@ -141,7 +159,11 @@ Bytes encode(const LiveFrame& f, std::span<const Step> curve, bool whole_curve, 
     out.put_floats(s.time_s - f.time_s, s.base_depth_mm, s.force_axial_N, s.force_sagittal_N, s.force_lateral_N,
                    s.step_us, static_cast<int>(s.tip_state), s.flags);
   }
-  out.put_all(std::span<const std::int16_t>(f.displacement));
+  if (eight_bits) {
+    out.put_all(std::span<const std::int8_t>(eight_bits->values));
+  } else {
+    out.put_all(std::span<const std::int16_t>(f.displacement));
+  }
   return out.take();
 }
 
@@ -167,7 +189,7 @@ Bytes encode(Kind kind, std::string_view json, std::uint32_t number) {
   return out.take();
 }
 
-std::optional<std::variant<HandTarget, Command>> decode(std::span<const std::byte> message) {
+std::optional<std::variant<HandTarget, Command, Seen>> decode(std::span<const std::byte> message) {
   if (message.size() < kHeader || message.size() > kLongestMessage) return std::nullopt;
   std::uint32_t kind = 0;
   std::memcpy(&kind, message.data(), sizeof kind);
@@ -176,6 +198,10 @@ std::optional<std::variant<HandTarget, Command>> decode(std::span<const std::byt
   } else if (kind == static_cast<std::uint32_t>(Kind::command)) {
     const auto text = message.subspan(kHeader);
     if (auto command = decode_command({reinterpret_cast<const char*>(text.data()), text.size()})) return *command;
+  } else if (kind == static_cast<std::uint32_t>(Kind::seen) && message.size() == kHeader + sizeof(Seen)) {
+    Seen seen;
+    std::memcpy(&seen, message.data() + kHeader, sizeof seen);
+    return seen;
   }
   return std::nullopt;
 }

@@ -20,8 +20,8 @@
 /// Encodes and decodes the messages of docs/live_protocol.md.
 namespace stylet::serve::wire {
 
-inline constexpr int kProtocol = 2;  ///< version of the protocol
-inline constexpr const char* kSubprotocol = "stylet-live-2";
+inline constexpr int kProtocol = 3;  ///< version of the protocol
+inline constexpr const char* kSubprotocol = "stylet-live-3";
 inline constexpr std::size_t kLongestMessage = 1024;  ///< [bytes] longest message of a page
 
 enum class Kind : std::uint32_t {
@@ -37,7 +37,13 @@ enum class Kind : std::uint32_t {
   dose = 10,
   image = 11,
   hand = 16,
-  command = 17
+  command = 17,
+  seen = 18
+};
+
+/// The number of the newest message that a page has taken up.
+struct Seen {
+  std::uint32_t number = 0;
 };
 
 using Bytes = std::vector<std::byte>;
@@ -46,7 +52,9 @@ using Bytes = std::vector<std::byte>;
 Bytes encode(const Scene& scene, std::uint32_t number);
 /// @param curve samples that this connection has not received; they replace the samples of the frame
 /// @param whole_curve whether `curve` starts at the beginning of the insertion
-Bytes encode(const LiveFrame& frame, std::span<const Step> curve, bool whole_curve, std::uint32_t number);
+/// @param coarse the displacement is sent with 8 bits in place of 16
+Bytes encode(const LiveFrame& frame, std::span<const Step> curve, bool whole_curve, std::uint32_t number,
+             bool coarse = false);
 Bytes encode(const LiveDose& dose, std::uint32_t number);
 Bytes encode(const LiveImage& image, std::uint32_t number);
 /// Encodes a message that is JSON: of any other kind.
@@ -54,7 +62,7 @@ Bytes encode(Kind kind, std::string_view json, std::uint32_t number);
 
 /// Decodes a message of a page. Empty if it is malformed: wrong length, unknown kind or command, numbers that are not
 /// finite or out of range.
-std::optional<std::variant<HandTarget, Command>> decode(std::span<const std::byte> message);
+std::optional<std::variant<HandTarget, Command, Seen>> decode(std::span<const std::byte> message);
 
 /// Reduces a curve to at most `most` samples: divides it into equal parts and keeps of each the samples with the least
 /// and the largest axial force, in their order.

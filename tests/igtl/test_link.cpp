@@ -226,6 +226,35 @@ TEST(Link, more_than_the_limit_are_turned_away) {
   EXPECT_TRUE(three.next("STATUS", "Stylet"));
 }
 
+TEST(Link, a_stranger_sees_nothing_and_moves_nothing_before_it_has_given_the_token) {
+  LinkSettings settings = any_port();
+  settings.trust_own_processes = false;
+  const auto link = opened(settings);
+  const auto token = [](const char* text) {
+    auto message = ::igtl::StringMessage::New();
+    message->SetDeviceName("Token");
+    message->SetString(text);
+    return packed(*message);
+  };
+  EXPECT_TRUE(Peer::to(link->state().port).closes()) << "there is no token";
+  EXPECT_TRUE(reaches(*link, [](const auto& s) { return s.turned_away == 1 && s.connections == 0; }));
+  EXPECT_NE(link->state().problem.find("no token"), std::string::npos) << link->state().problem;
+
+  link->accept_token("the right one");
+  Peer silent = Peer::to(link->state().port);
+  Peer peer = Peer::to(link->state().port);
+  peer.send(library_transform("HandleToReference", at(1, 2, 3)));
+  peer.send(token("the wrong one"));
+  peer.send(token("the right one"));
+  ASSERT_TRUE(peer.next("STATUS", "Stylet"));
+  peer.send(library_transform("HandleToReference", at(1, 2, 3)));
+  EXPECT_TRUE(reaches(*link, [](const auto& s) { return s.poses == 1 && s.connections == 1; }));
+  EXPECT_TRUE(silent.closes());
+  EXPECT_TRUE(reaches(*link, [](const auto& s) { return s.turned_away == 2; }));
+  EXPECT_EQ(link->state().poses, 1) << "what came before the token does not count";
+  EXPECT_EQ(link->state().connected, 1);
+}
+
 TEST(Link, a_port_that_is_taken_is_an_error_that_says_so) {
   const auto link = opened(any_port());
   LinkSettings same;

@@ -13,6 +13,8 @@
 #include <boost/beast/websocket.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstring>
 #include <functional>
@@ -120,7 +122,9 @@ class LiveClient {
     const std::size_t size = buffer.size();
     ASSERT_GE(size, 8u);
     const auto kind = at<std::uint32_t>(bytes, 0);
-    EXPECT_EQ(at<std::uint32_t>(bytes, 4), received++) << "messages are numbered";
+    const auto number = at<std::uint32_t>(bytes, 4);
+    EXPECT_EQ(number, received++) << "messages are numbered";
+    received_bytes += size;
     if (kind == 1) {
       scene = nlohmann::json::parse(bytes + 20, bytes + 20 + at<std::uint32_t>(bytes, 8));
       scene_nodes = at<std::uint32_t>(bytes, 12);
@@ -136,6 +140,7 @@ class LiveClient {
       ++frames;
     } else if (kind == 3) {
       status = nlohmann::json::parse(bytes + 8, bytes + size);
+      if (status.value("hand_stopped", false) && answers) command(R"({"do":"go_on"})");
     } else if (kind == 4) {
       events.push_back(nlohmann::json::parse(bytes + 8, bytes + size));
     } else if (kind == 5) {
@@ -159,6 +164,13 @@ class LiveClient {
       pixels.assign(bytes + 20 + length, bytes + size);
       ++images;
     }
+    constexpr std::array answered{2U, 3U, 9U, 10U, 11U};
+    if (answers && std::ranges::find(answered, kind) != answered.end()) seen(number);
+  }
+  /// Says that all messages up to this one have been taken up.
+  void seen(std::uint32_t number) {
+    const std::array<std::uint32_t, 3> message{18, 0, number};
+    send(message.data(), sizeof message);
   }
   [[nodiscard]] bool ready() const { return status.value("state", "") == "ready" && frames > 0; }
   [[nodiscard]] bool has_event(const std::string& kind) const {
@@ -176,6 +188,8 @@ class LiveClient {
   std::vector<nlohmann::json> events, notices;
   std::uint32_t received = 0, scenes = 0, frames = 0, images = 0, bits = 0, samples = 0, displaced_nodes = 0,
                 scene_nodes = 0, dose_points = 0;
+  bool answers = true;  // as a page does: says what it has taken up, and goes on after its hand was stopped
+  std::size_t received_bytes = 0;
   double time_s = 0.0;
   float depth_mm = 0.0F, force_N = 0.0F, most_N = 0.0F;
 

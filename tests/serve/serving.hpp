@@ -49,6 +49,7 @@ struct Serving {
     serve::ServerSettings s;
     s.port = 0;
     s.asks_for_token = false;
+    s.hand_silence_s = 10.0;  // tests read the messages of one viewer at a time
     s.session.cases = {box_case("first"), box_case("second")};
     s.session.recordings = folder.path;
     s.session.runner.period_s = 4e-3;

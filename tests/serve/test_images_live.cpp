@@ -71,8 +71,8 @@ TEST(LiveImages, show_the_needle_and_a_replay) {
   page.command(R"({"do":"image","show":"xray"})");
   ASSERT_TRUE(page.until([&] { return page.images > 0 && page.time_s > 0.1; }));
   page.command(R"({"do":"set","key":"fluoroscopy.photons","value":0})");
-  const auto before = page.images;
-  ASSERT_TRUE(page.until([&] { return page.images > before + 1; }));
+  page.command(R"({"do":"set","key":"fluoroscopy.angle_deg","value":1})");
+  ASSERT_TRUE(page.until([&] { return page.image["angle_deg"] == 1.0; }));
   const std::vector<unsigned char> without = page.pixels;
   ASSERT_TRUE(page.go_to(28.0F, 100.0F));
   ASSERT_TRUE(page.until([&] {  // the needle is in the picture

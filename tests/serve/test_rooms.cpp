@@ -284,6 +284,7 @@ TEST(PictureRoom, keeps_settings_of_the_live_probe_over_a_replay) {
   Opened opened(case_with_rectum());
   PictureRoom room(opened.settings);
   room.open(opened.room.patient());
+  EXPECT_TRUE(room.wants_moment()) << "of the patient that is new";
   EXPECT_SAYS(refused_by(room.ask(ask_for(Do::image, 0.0, "colour"))), "there is no picture \"colour\"");
   EXPECT_SAYS(refused_by(room.ask(ask_for(Do::set, 3.0, "tissue.creep"))), "it is not a key of the pictures");
   EXPECT_SAYS(refused_by(room.ask(ask_for(Do::set, 1000.0, "probe.lift_mm"))), "probe.lift_mm");

@@ -26,7 +26,7 @@ bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == s
 TEST(Server, a_hand_at_a_page_pushes_the_needle_in_and_sees_force_and_events) {
   const Serving serving;
   const auto client = ready_client(serving);
-  EXPECT_EQ(client->scene["protocol"], 2);
+  EXPECT_EQ(client->scene["protocol"], 3);
   EXPECT_EQ(client->scene["cases"], nlohmann::json({"first", "second"}));
   EXPECT_EQ(client->scene["insertions"][0]["hole"], "D4");
   EXPECT_LT(client->depth_mm, 0.0F) << "before the skin";
@@ -328,6 +328,120 @@ TEST(Server, a_viewer_that_does_not_read_loses_pictures_and_keeps_nobody_waiting
   ASSERT_TRUE(sleeper.until([&] { return sleeper.ready(); }));
   const double now = reader->time_s;
   EXPECT_TRUE(sleeper.until([&] { return sleeper.time_s >= now; }));
+}
+
+TEST(Server, a_page_that_takes_nothing_up_gets_all_states_and_no_more_pictures_than_the_bound) {
+  const Serving serving;
+  const auto holder = ready_client(serving);
+  ASSERT_TRUE(holder->take());
+  LiveClient idle(serving.port());
+  ASSERT_TRUE(idle.until([&] { return idle.ready(); }));
+  idle.answers = false;
+  std::atomic<bool> ends{false};
+  std::thread moves([&] {
+    for (bool in = true; !ends; in = !in) {
+      if (!holder->go_to(in ? 25.0F : 0.0F, 60.0F)) return;
+    }
+  });
+  const auto hears_states = [&](std::uint32_t count) {
+    const std::uint32_t others = idle.received - idle.frames;
+    return idle.until([&] { return idle.received - idle.frames > others + count; });
+  };
+  EXPECT_TRUE(hears_states(10));
+  const std::uint32_t before = idle.frames;
+  EXPECT_TRUE(hears_states(4));
+  EXPECT_EQ(idle.frames, before) << "what is under way is bounded";
+  const double then = idle.time_s;
+  idle.seen(idle.received - 1);
+  EXPECT_TRUE(idle.until([&] { return idle.frames > before; }));
+  EXPECT_GT(idle.time_s, then + 1.0) << "the newest picture, not the next";
+  EXPECT_TRUE(idle.until([&] { return idle.status["lag_s"].is_number() && idle.status["lag_s"] > 0.5; }));
+  ends = true;
+  moves.join();
+}
+
+TEST(Server, a_needle_at_rest_costs_little_in_front_of_the_skin_and_in_the_tissue) {
+  const Serving serving;
+  const auto client = ready_client(serving);
+  ASSERT_TRUE(client->take());
+  for (const float depth_mm : {-3.0F, 20.0F}) {
+    ASSERT_TRUE(client->go_to(depth_mm));
+    ASSERT_TRUE(client->passes(1.0)) << "it comes to rest";
+    const auto begun = std::chrono::steady_clock::now();
+    const std::size_t before = client->received_bytes;
+    ASSERT_TRUE(client->passes(2.0));
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begun;
+    EXPECT_LE(static_cast<double>(client->received_bytes - before), 50e3 * seconds.count()) << depth_mm;
+  }
+}
+
+TEST(Server, stops_the_needle_of_a_holder_who_falls_silent_and_lets_it_go_on) {
+  const Serving serving([](serve::ServerSettings& s) { s.hand_silence_s = 0.8; });
+  const auto holder = ready_client(serving);
+  const auto watcher = ready_client(serving);
+  ASSERT_TRUE(holder->take());
+  holder->hand(100.0F, 10.0F);
+  const auto stands = [&] {  // its depth after it has stood for a while
+    float depth_mm = watcher->depth_mm;
+    double since_s = watcher->time_s;
+    EXPECT_TRUE(watcher->until([&] {
+      if (watcher->depth_mm != depth_mm) since_s = watcher->time_s;
+      depth_mm = watcher->depth_mm;
+      return watcher->time_s > since_s + 0.5;
+    }));
+    return depth_mm;
+  };
+  ASSERT_TRUE(watcher->until([&] { return watcher->depth_mm > 1.0F; }));  // nobody reads what the holder gets
+  const float there = stands();
+  EXPECT_LT(there, 90.0F);
+  holder->hand(100.0F, 10.0F);  // as from a page whose messages have been under way for long
+  EXPECT_EQ(stands(), there) << "the page does not know yet that its hand was stopped";
+  EXPECT_FALSE(watcher->has_event("retraction_start"));
+  EXPECT_TRUE(watcher->status.value("held", false)) << "it still holds the needle";
+  ASSERT_TRUE(holder->until([&] { return holder->status.value("hand_stopped", false); }));
+  ASSERT_TRUE(holder->until([&] { return !holder->status.value("hand_stopped", true); }));
+  ASSERT_TRUE(holder->go_to(there + 2.0F));
+}
+
+TEST(Server, tells_the_connection_one_too_many_and_lets_it_in_later) {
+  const Serving serving([](serve::ServerSettings& s) { s.connections_per_address = 3; });
+  boost::asio::io_context io;
+  std::vector<tcp::socket> silent;
+  for (int k = 0; k < 3; ++k) silent.push_back(connected(io, serving.port()));
+  const auto refused = get(serving.port(), "/");
+  EXPECT_EQ(refused.result(), http::status::service_unavailable);
+  EXPECT_NE(refused.body().find("too many connections"), std::string::npos);
+  silent.clear();
+  auto status = http::status::unknown;
+  for (int k = 0; k < 1000 && status != http::status::ok; ++k) {
+    status = get(serving.port(), "/").result();
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_EQ(status, http::status::ok);
+}
+
+TEST(Server, tells_the_viewer_one_too_many) {
+  const Serving serving([](serve::ServerSettings& s) { s.viewers = 1; });
+  const auto client = ready_client(serving);
+  EXPECT_THROW(LiveClient second(serving.port()), boost::system::system_error);
+  const auto refused = get(serving.port(), "/live");
+  EXPECT_EQ(refused.result(), http::status::service_unavailable);
+  EXPECT_NE(refused.body().find("too many viewers"), std::string::npos);
+}
+
+TEST(Server, gives_a_recording_whose_name_has_quotes) {
+  const Serving serving;
+  const auto client = ready_client(serving);
+  ASSERT_TRUE(client->take());
+  ASSERT_TRUE(client->passes(0.1));
+  const std::string name = client->recording();
+  client->command(R"({"do":"reset"})");
+  ASSERT_TRUE(client->until([&] { return client->recording() != name; }));
+  std::filesystem::rename(serving.folder.path / name, serving.folder.path / "a\"; b=\"c");
+  const auto curve = get(serving.port(), "/recordings/a%22%3B%20b%3D%22c/forces.csv");
+  ASSERT_EQ(curve.result(), http::status::ok);
+  EXPECT_EQ(curve[http::field::content_disposition],
+            "attachment; filename=\"a__ b__c.csv\"; filename*=UTF-8''a%22%3B%20b%3D%22c.csv");
 }
 
 TEST(Server, the_page_is_for_this_machine_and_its_own_origin) {

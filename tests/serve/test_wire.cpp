@@ -39,7 +39,7 @@ wire::Bytes message(std::uint32_t kind, const void* data, std::size_t size) {
 wire::Bytes hand(std::array<float, 5> values) { return message(16, values.data(), sizeof values); }
 wire::Bytes command(const std::string& text) { return message(17, text.data(), text.size()); }
 
-const Command* as_command(const std::optional<std::variant<HandTarget, Command>>& decoded) {
+const Command* as_command(const std::optional<std::variant<HandTarget, Command, wire::Seen>>& decoded) {
   return decoded ? std::get_if<Command>(&*decoded) : nullptr;
 }
 
@@ -207,6 +207,36 @@ TEST(Wire, commands_carry_what_they_need) {
   }
   for (const char* name : {"take", "release", "reset", "pause", "resume", "live", "drawn", "drop", "undo", "clear"})
     EXPECT_NE(as_command(wire::decode(command(std::string(R"({"do":")") + name + "\"}"))), nullptr) << name;
+}
+
+TEST(Wire, a_coarse_displacement_has_half_the_bytes_and_its_own_unit) {
+  LiveFrame frame;
+  frame.unit_mm = 0.001;
+  frame.displacement = {1270, -1270, 5, 14, -16, 0};
+  const wire::Bytes fine = wire::encode(frame, {}, false, 1);
+  const wire::Bytes coarse = wire::encode(frame, {}, false, 1, true);
+  EXPECT_EQ(coarse.size() + 6, fine.size());
+  Reader bits{coarse, 16};
+  EXPECT_EQ(bits.count(), LiveFrame::displaced | LiveFrame::coarse);
+  Reader unit{coarse, 128};
+  EXPECT_NEAR(unit.number(), 0.01, 1e-9);
+  Reader values{coarse, coarse.size() - 6};
+  for (const int u : {127, -127, 1, 1, -2, 0}) EXPECT_EQ(int{values.take<std::int8_t>()}, u);
+  frame.displacement = {3, -4, 0, 0, 0, 0};
+  const wire::Bytes small = wire::encode(frame, {}, false, 1, true);
+  Reader same{small, 128};
+  EXPECT_NEAR(same.number(), 0.001, 1e-9) << "not finer than it is";
+}
+
+TEST(Wire, a_page_says_which_message_it_has_taken_up) {
+  const std::uint32_t number = 7;
+  const auto decoded = wire::decode(message(18, &number, sizeof number));
+  ASSERT_TRUE(decoded);
+  const auto* seen = std::get_if<wire::Seen>(&*decoded);
+  ASSERT_NE(seen, nullptr);
+  EXPECT_EQ(seen->number, 7u);
+  EXPECT_FALSE(wire::decode(message(18, &number, 3)));
+  EXPECT_FALSE(wire::decode(message(18, nullptr, 0)));
 }
 
 TEST(Wire, what_is_malformed_is_nothing) {

@@ -139,3 +139,23 @@ test('a key that was down when the needle jumped does not make the next tap shor
   needle.pass(300);
   assert.ok(needle.depth > there + 0.1, `${needle.depth - there} mm`);
 });
+
+test('a needle that the server has stopped on its way is told of and stays, and a push starts from where it is', () => {
+  const told = [];
+  needle.notify = (text) => told.push(text);
+  const stop = () => needle.listeners.stopped.forEach((listener) => listener());
+  stop();
+  assert.deepEqual(told, [], 'nothing moved');
+  hand.setSpeed(20);
+  hand.push(30);
+  needle.pass(500);
+  needle.target = { depth: needle.depth, speed: 0 };  // the server does so
+  stop();
+  assert.equal(told.length, 1);
+  const there = needle.depth;
+  needle.pass(500);
+  assert.equal(needle.depth, there);
+  hand.push(1);
+  needle.pass(500);
+  assert.ok(Math.abs(needle.depth - there - 1) < 0.05, `${needle.depth} after ${there}`);
+});

@@ -23,6 +23,15 @@ test('a frame comes out as it went in', () => {
   assert.deepEqual(message.frame, frame());
 });
 
+test('a coarse displacement has a byte for each number', () => {
+  const fine = encodeFrame(frame());
+  const coarse = new Uint8Array(fine.slice(0, fine.byteLength - 3));
+  new DataView(coarse.buffer).setUint32(16, new DataView(fine).getUint32(16, true) | 32, true);
+  coarse.set([1, 256 - 2, 3], coarse.length - 3);
+  assert.deepEqual(decode(coarse.buffer).frame, frame());
+  assert.throws(() => decode(coarse.buffer.slice(0, coarse.length - 1)), WireError);
+});
+
 test('a frame that lacks a byte or has one too many is refused', () => {
   const buffer = encodeFrame(frame());
   assert.throws(() => decode(buffer.slice(0, buffer.byteLength - 1)), WireError);

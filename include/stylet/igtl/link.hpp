@@ -35,11 +35,13 @@ struct LinkSettings {
   std::string probe = "ProbeToReference";
   std::string image = "Image_Reference";
   std::string status = "Stylet";
-  double poses_hz = 60.0;      ///< [1/s] 1…1000, rate of the messages with poses and force
-  double surface_hz = 10.0;    ///< [1/s] 0.1…poses_hz, highest rate of the messages with the surface
-  double images_hz = 30.0;     ///< [1/s] 0.1…poses_hz, highest rate of the images
-  double fresh_s = 0.25;       ///< [s] 0.01…10; the force of a picture older than this is not sent
-  bool checksums = true;       ///< whether received messages have to match their checksums; some programs send none
+  double poses_hz = 60.0;    ///< [1/s] 1…1000, rate of the messages with poses and force
+  double surface_hz = 10.0;  ///< [1/s] 0.1…poses_hz, highest rate of the messages with the surface
+  double images_hz = 30.0;   ///< [1/s] 0.1…poses_hz, highest rate of the images
+  double fresh_s = 0.25;     ///< [s] 0.01…10; the force of a picture older than this is not sent
+  bool checksums = true;     ///< whether received messages have to match their checksums; some programs send none
+  /// Whether a server takes processes of this user on this machine without a token. All others need one.
+  bool trust_own_processes = true;
   int max_connections = 8;     ///< 1…64, of a server; further connections are refused
   double give_up_s = 10.0;     ///< [s] 0.1…600; a connection that accepts no data for this time is closed
   double retry_s = 0.25;       ///< [s] 0.01…60, first pause of a client before it connects again; each pause doubles
@@ -52,7 +54,7 @@ struct LinkState {
   int connections = 0;              ///< open connections
   bool tracked = false;             ///< the last pose of the handle was usable, and its sender is still connected
   std::int64_t connected = 0;       ///< connections made in total
-  std::int64_t turned_away = 0;     ///< connections refused because there were max_connections already
+  std::int64_t turned_away = 0;     ///< connections refused: max_connections, or strangers without the token
   std::int64_t poses = 0;           ///< usable poses of the handle that were received
   std::int64_t unusable = 0;        ///< received poses that were no rigid motion, or whose sender's STATUS was not OK
   std::int64_t of_others = 0;       ///< received poses of the handle while another connection had the handle
@@ -82,6 +84,10 @@ class Link {
   /// of the latest call receives poses. Set RunnerSettings::late_after_s to several periods of the sender (0.1 s for 30
   /// to 60 Hz), because the runner fades the force out when samples are older than this.
   [[nodiscard]] std::unique_ptr<Device> device();
+
+  /// Lets programs of other users and machines in that give this token, as the STRING "Token" and within 5 s. Without a
+  /// token a server refuses them. May be called from any thread.
+  void accept_token(const std::string& token);
 
   /// Sets the picture that is sent next. Does not wait; call it from one thread only. Of pictures that come faster than
   /// poses_hz, the newest is sent.

@@ -21,7 +21,7 @@ struct Scene {
 
 /// The state at one moment, as it is sent to viewers (wire.hpp).
 struct LiveFrame {
-  enum Bit : std::uint32_t { paused = 1, replayed = 2, trusted = 4, displaced = 8, whole_curve = 16 };
+  enum Bit : std::uint32_t { paused = 1, replayed = 2, trusted = 4, displaced = 8, whole_curve = 16, coarse = 32 };
 
   double time_s = 0.0;  ///< simulated time; in a replay it may lie between `step` and the next one
   Step step;            ///< the last step
@@ -36,6 +36,7 @@ struct LiveFrame {
   std::vector<Step> curve;                 ///< steps since the last frame; with the bit whole_curve, all steps
   double unit_mm = 0.0;                    ///< length that 1 in `displacement` stands for
   std::vector<std::int16_t> displacement;  ///< (3 n) displacement of the scene's points; may be empty
+  bool is_news = true;                     ///< false: a sign of life of a needle at rest; not sent
 };
 
 /// Stores displacements in a frame, in the smallest unit_mm in which the largest fits 16 bits (at least 0.001 mm).

@@ -3,6 +3,7 @@
 
 #include "detail/file_kind.hpp"
 #include "detail/input_file.hpp"
+#include "detail/private_files.hpp"
 #include "detail/text.hpp"
 #include "model/build_id.hpp"
 #include "model/digest.hpp"
@@ -135,11 +136,9 @@ Result<> ModelCache::keep(const Model& model, const std::string& key, std::span<
   const Eigen::Index entries = model.store()->blocks().size();
   if (static_cast<std::uintmax_t>(entries) / 2 * sizeof(double) > most_bytes_)
     return Ok{};  // too large, although only one triangle of the symmetric matrix is saved
-  std::error_code code;
-  fs::create_directories(folder_, code);
-  if (code)
-    return failure(folder_.string(), "cannot be created: " + code.message(),
-                   "Check the permissions, or choose another folder");
+  detail::make_private_folder(folder_);
+  if (std::error_code code; !fs::is_directory(folder_, code))
+    return failure(folder_.string(), "the folder cannot be created", "Check the permissions, or choose another folder");
   const fs::path file = folder_ / (key + detail::kModelExtension);
   if (auto saved = save_model(model, file, notes, progress); !saved) return saved;
   forget_oldest(file);

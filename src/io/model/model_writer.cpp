@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "detail/private_files.hpp"
 #include "detail/whole_file.hpp"
 #include "h5.hpp"
 #include "h5_mesh.hpp"
@@ -62,6 +63,7 @@ std::string index_of(hid_t file, const ModelFile& content) {
 }
 
 void write(const fs::path& path, const ModelFile& content, const Progress& progress) {
+  detail::make_private_file(path);  // a model holds the patient's organs
   h5::Handle file = h5::create_file(path.c_str());
   h5::write_attribute(file, "format", std::string(kModelFileFormat));
   h5::write_attribute(file, "format_version", std::array{kModelFileVersion});

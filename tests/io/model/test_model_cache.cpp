@@ -7,6 +7,8 @@
 #include "stylet/io/model_cache.hpp"
 #include "stylet/io/model_file.hpp"
 
+#include <sys/stat.h>
+
 #include <fstream>
 
 namespace stylet {
@@ -133,6 +135,17 @@ TEST(ModelCache, finds_what_was_kept) {
   ASSERT_TRUE(content) << content.error().message();
   EXPECT_EQ(content->notes, std::vector<std::string>{"a note"});
   EXPECT_EQ(content->mesh.nodes.size(), box_model()->mesh().nodes.size());
+}
+
+TEST(ModelCache, is_for_this_user_only_whatever_the_umask) {
+  for (const mode_t mask : {mode_t{0}, mode_t{0777}}) {
+    const Folder folder;
+    const mode_t before = ::umask(mask);
+    keep(ModelCache(folder.path() / "models"), "box");
+    ::umask(before);
+    EXPECT_EQ(fs::status(folder.path() / "models").permissions(), fs::perms(0700));
+    EXPECT_EQ(fs::status(folder.path() / "models" / "box.stylet").permissions(), fs::perms(0600));
+  }
 }
 
 TEST(ModelCache, looks_into_other_folders_too) {

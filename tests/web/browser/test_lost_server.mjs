@@ -6,7 +6,8 @@ import { SMALL, startServer } from './server.mjs';
 import { stage } from './stage.mjs';
 
 let page, problems;
-const set = stage({ ready: async () => ({ page, problems } = set) });
+const OPTIONS = [...SMALL, '--keep-token'];  // so that the page may connect to the next server
+const set = stage({ options: OPTIONS, ready: async () => ({ page, problems } = set) });
 const { test } = set;
 
 test('the page says that it has lost the server, and shows the last pictures as old ones', async () => {
@@ -22,7 +23,7 @@ test('the page says that it has lost the server, and shows the last pictures as 
 });
 
 test('it goes on when there is a server again', async () => {
-  set.server = await startServer(set.folder, { options: SMALL, port: set.server.port });
+  set.server = await startServer(set.folder, { options: OPTIONS, port: set.server.port });
   await waitUntilReady(page);
   await page.getByText('You hold the needle').waitFor();
   await untilReadout(page, 'Depth', (depth) => depth === -3);

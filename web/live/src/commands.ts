@@ -5,6 +5,7 @@
 export type Command =
   | { do: 'take' }
   | { do: 'release' }
+  | { do: 'go_on' }
   | { do: 'hole'; hole: string }
   | { do: 'insertion'; index: number }
   | { do: 'needle'; index: number }

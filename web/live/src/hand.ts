@@ -9,6 +9,7 @@ export const SPEEDS = [5, 20, 50];         // [mm/s]
 const MOST_LEAD_S = 0.25;                  // while a key is held, the target is at most this time ahead of the needle
 const TAP_MS = 1000 / 60;                  // shortest duration of a motion by a key
 const SEND_EVERY_MS = 1000 / 60;
+const AT_TARGET_MM = 0.05;
 
 /**
  * The source of the target's depth. followed: the simulation, because nobody pushes. driven: this page, because the
@@ -38,6 +39,7 @@ export class HandControl {
     session.on('restart', () => this.rest());
     session.on('event', (e) => e.kind === 'started' && this.rest());
     session.on('status', () => session.steering || this.rest());
+    session.on('stopped', () => this.stopped());
     let known: Scene | null = null;
     session.on('scene', (scene) => {
       const again = known !== null && samePatient(known, scene);
@@ -128,6 +130,14 @@ export class HandControl {
     this.turned = true;
     this.target.tiltLeft = this.target.tiltAnterior = 0;
     this.send();
+  }
+
+  /** The server has stopped the needle. The user is told if it was on its way. */
+  private stopped(): void {
+    const { session } = this;
+    const moved = this.depth === 'driven' && session.frame && Math.abs(session.frame.depth - this.target.depth) > AT_TARGET_MM;
+    if (moved && session.steering && !session.guest) session.notify('The needle was stopped where it is, because this page did not answer.', 'Push again to go on.');
+    this.rest();
   }
 
   private begin(): boolean {

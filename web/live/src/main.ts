@@ -4,6 +4,7 @@ import './live.css';
 import { Anatomy } from './anatomy';
 import { buildChart } from './chart/chart_panel';
 import { Connection, serverAddress } from './connection';
+import { AgeLabel } from './controls/age_label';
 import { Cover } from './controls/cover';
 import { makeHelp, makeRecordings } from './controls/dialogs';
 import { bindGamepad } from './controls/gamepad';
@@ -49,6 +50,7 @@ session.on('scene', (scene) => {
 session.on('frame', (frame) => anatomy?.show(frame));
 
 new Cover(part('cover'), session);
+new AgeLabel(document.body, session);
 showNotices(part('notices'), session);
 speakEvents(document.body, session);
 new Header(part('top'), session, hand, { recordings: makeRecordings(session), picture: takePicture, help });

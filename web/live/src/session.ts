@@ -5,7 +5,7 @@ import { understood, type Connection, type ConnectionListener } from './connecti
 import type { LiveImage } from './imaging/image';
 import type { Dose, Implant, Plan, Seeds } from './implant/implant';
 import type { Scene } from './scene';
-import { encodeCommand, encodeHand, Kind, type Event, type Frame, type Hand, type LiveMap, type Notice, type Status } from './wire';
+import { encodeCommand, encodeHand, encodeSeen, Kind, numberOf, type Event, type Frame, type Hand, type LiveMap, type Message, type Notice, type Status } from './wire';
 
 interface Topics {
   link: void;       // the connection was opened or closed
@@ -21,9 +21,13 @@ interface Topics {
   image: LiveImage; // the newest ultrasound or X-ray picture
   map: LiveMap;     // the map of the template's holes
   restart: void;    // the needle is at a start; earlier events do not count
+  stopped: void;    // the server has stopped the hand of this page, which had been silent
 }
 
 const MOST_EVENTS = 500;
+const HERE_EVERY_MS = 250;  // while this page holds the needle, it says so often that it is still there
+// Messages of which the server sends no more until the page has taken up the earlier ones, and the regular status.
+const ANSWERED = new Set<Kind>([Kind.frame, Kind.status, Kind.seeds, Kind.dose, Kind.image]);
 
 export class Session implements ConnectionListener {
   connected = false;
@@ -32,6 +36,7 @@ export class Session implements ConnectionListener {
   status: Status | null = null;
   scene: Scene | null = null;
   frame: Frame | null = null;
+  frameAt = 0;                    // [ms] performance.now() when the last frame came
   map: LiveMap | null = null;
   plan: Plan | null = null;        // null: this case has no plan
   implant: Implant | null = null;
@@ -39,15 +44,20 @@ export class Session implements ConnectionListener {
   dose: Dose | null = null;
   image: LiveImage | null = null;
   events: Event[] = [];           // since the start of the insertion
+  private newest = 0;             // number of the last message
+  private handStopped = false;
   private letGo = false;          // the user has handed the needle over, so the page does not take it on its own
   private readonly listeners: { [K in keyof Topics]: ((what: Topics[K]) => void)[] } = {
-    link: [], status: [], scene: [], frame: [], event: [], notice: [], map: [], plan: [], implant: [], seeds: [], dose: [], image: [], restart: [],
+    link: [], status: [], scene: [], frame: [], event: [], notice: [], map: [], plan: [], implant: [], seeds: [], dose: [], image: [], restart: [], stopped: [],
   };
 
   constructor(private readonly connection: Connection) {}
 
   start(): void {
     this.connection.open(this);
+    setInterval(() => {
+      if (this.connected && this.status?.you_hold) this.connection.send(encodeSeen(this.newest), true);
+    }, HERE_EVERY_MS);
   }
 
   on<K extends keyof Topics>(topic: K, listener: (what: Topics[K]) => void): void {
@@ -104,7 +114,16 @@ export class Session implements ConnectionListener {
 
   message(data: ArrayBuffer): void {
     const message = understood(data);
-    if (!message) return;
+    this.newest = numberOf(data);
+    try {
+      if (message) this.take(message);
+    } finally {
+      // Only now, so that a page that is busy with drawing gets fewer pictures.
+      if (!message || ANSWERED.has(message.kind)) this.connection.send(encodeSeen(this.newest));
+    }
+  }
+
+  private take(message: Message): void {
     switch (message.kind) {
       case Kind.scene:
         this.scene = message.scene;
@@ -113,6 +132,7 @@ export class Session implements ConnectionListener {
         return this.tell('scene', message.scene);
       case Kind.frame:
         this.frame = message.frame;
+        this.frameAt = performance.now();
         return this.tell('frame', message.frame);
       case Kind.status: return this.takeStatus(message.status);
       case Kind.event:
@@ -150,6 +170,12 @@ export class Session implements ConnectionListener {
     // In a replay, the hole of the replayed scene is shown, not the hole of the live needle.
     if (status.mode === 'replay') status.hole = this.scene?.insertions[0]?.hole ?? '';
     this.status = status;
+    const stopped = status.you_hold === true && status.hand_stopped === true;
+    if (stopped && !this.handStopped) {
+      this.tell('stopped', undefined);
+      this.connection.send(encodeCommand({ do: 'go_on' }));
+    }
+    this.handStopped = stopped;
     // If nobody holds the needle, this page takes it, so that a first visitor need not know that it must be held.
     const free = status.state === 'ready' && status.held === false && !status.you_hold;
     if (free && !this.letGo) this.connection.send(encodeCommand({ do: 'take' }));

@@ -7,10 +7,10 @@ import type { LiveImage, ImageText, ShownImage } from './imaging/image';
 import type { Dose, Implant, Plan, Seeds } from './implant/implant';
 import type { Scene, SceneText } from './scene';
 
-export const SUBPROTOCOL = 'stylet-live-2';
-export const PROTOCOL = 2;
+export const SUBPROTOCOL = 'stylet-live-3';
+export const PROTOCOL = 3;
 
-export const enum Kind { scene = 1, frame = 2, status = 3, event = 4, notice = 5, map = 6, plan = 7, implant = 8, seeds = 9, dose = 10, image = 11, hand = 16, command = 17 }
+export const enum Kind { scene = 1, frame = 2, status = 3, event = 4, notice = 5, map = 6, plan = 7, implant = 8, seeds = 9, dose = 10, image = 11, hand = 16, command = 17, seen = 18 }
 export const TIP_STATES = ['in air', 'pressing', 'cutting', 'in its track', 'on bone', 'through'] as const;
 export const SAMPLE_WORDS = 8;  // time, depth, axial, sagittal, lateral force, CPU time [µs], tip state, flags
 
@@ -52,12 +52,12 @@ export interface Status {
   state: 'loading' | 'ready' | 'failed';
   stage?: string; fraction?: number | null; message?: string; cure?: string;
   mode?: 'live' | 'replay'; paused?: boolean; insertion?: string; hole?: string; inside?: string[];
-  you_hold?: boolean; held?: boolean; asking?: number; you_ask?: boolean; viewers?: number; device?: string; device_problem?: string;
+  you_hold?: boolean; hand_stopped?: boolean; held?: boolean; asking?: number; you_ask?: boolean; viewers?: number; device?: string; device_problem?: string;
   recording?: { name: string; seconds: number; problem?: string; warning?: string } | null;
   replay?: { name: string; time_s: number; duration_s: number; playing: boolean; rate: number } | null;
   image?: { shown: ShownImage; problem: string; stage: string; probe_device?: string; probe_problem?: string };
   loop?: { steps: number; missed: number; p50_us: number; p99_us: number; max_us: number; rights?: string } | null;
-  dropped_messages?: number; skipped_frames?: number;
+  lag_s?: number | null; dropped_messages?: number; skipped_frames?: number;
 }
 
 export interface Event { kind: string; time_s: number; depth_mm: number; force_N: number; region: string }
@@ -125,7 +125,8 @@ function decodeFrame(buffer: ArrayBuffer, view: DataView): Frame {
   const atContacts = FRAME_HEADER + 12 * p;
   const atSamples = atContacts + 32 * c;
   const atNodes = atSamples + 4 * SAMPLE_WORDS * s;
-  must(buffer.byteLength === atNodes + 6 * n, 'a frame of the wrong length');
+  const coarse = (bits & 32) !== 0;
+  must(buffer.byteLength === atNodes + (coarse ? 3 : 6) * n, 'a frame of the wrong length');
   const contacts = new Float32Array(4 * c);
   const contactForces = new Float32Array(3 * c);
   const raw = floats(atContacts, 8 * c);
@@ -148,7 +149,7 @@ function decodeFrame(buffer: ArrayBuffer, view: DataView): Frame {
     line: floats(FRAME_HEADER, 3 * p),
     contacts, contactForces,
     samples: floats(atSamples, SAMPLE_WORDS * s),
-    displacement: new Int16Array(buffer, atNodes, 3 * n),
+    displacement: coarse ? Int16Array.from(new Int8Array(buffer, atNodes, 3 * n)) : new Int16Array(buffer, atNodes, 3 * n),
   };
 }
 
@@ -195,6 +196,19 @@ export function encodeHand(hand: Hand): ArrayBuffer {
   const view = new DataView(new ArrayBuffer(HEADER + 20));
   view.setUint32(0, Kind.hand, true);
   [hand.depth, hand.speed, hand.roll, hand.tiltLeft, hand.tiltAnterior].forEach((value, i) => view.setFloat32(HEADER + 4 * i, value, true));
+  return view.buffer as ArrayBuffer;
+}
+
+/** The number of a message of the server; 0 if it has no header. */
+export function numberOf(buffer: ArrayBuffer): number {
+  return buffer.byteLength >= HEADER ? new DataView(buffer).getUint32(4, true) : 0;
+}
+
+/** @param number of the newest message that the page has taken up */
+export function encodeSeen(number: number): ArrayBuffer {
+  const view = new DataView(new ArrayBuffer(HEADER + 4));
+  view.setUint32(0, Kind.seen, true);
+  view.setUint32(HEADER, number, true);
   return view.buffer as ArrayBuffer;
 }
 

@@ -5,6 +5,8 @@ import { element } from '../../../shared/dom';
 import { serverAddress } from '../connection';
 import type { Session } from '../session';
 
+const REFUSALS = [401, 403, 503];  // the token, the origin, too many viewers or connections
+
 export class Cover {
   private readonly card = element('div', 'card');
   private readonly title = element('h2');
@@ -58,8 +60,8 @@ export class Cover {
   /** Asks for the reason of a refusal with an HTTP request, because a refused WebSocket gives none. */
   private async askWhy(): Promise<void> {
     try {
-      const answer = await fetch(serverAddress('recordings'));
-      this.refusal = answer.status === 401 || answer.status === 403 ? (await answer.text()).trim() : '';
+      const answer = await fetch(serverAddress('live'));
+      this.refusal = REFUSALS.includes(answer.status) ? (await answer.text()).trim() : '';
     } catch {
       this.refusal = '';
     }

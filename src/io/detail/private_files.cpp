@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "private_files.hpp"
+#include "detail/private_files.hpp"
 
+#include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <system_error>
 
-namespace stylet::serve {
+namespace stylet::detail {
 namespace fs = std::filesystem;
 
 void make_private_folder(const fs::path& folder) {
@@ -16,9 +18,16 @@ void make_private_folder(const fs::path& folder) {
   fs::permissions(place, fs::perms::owner_all, code);
 }
 
+void make_private_file(const fs::path& file) {
+  const int made = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  if (made < 0) return;
+  ::fchmod(made, S_IRUSR | S_IWUSR);
+  ::close(made);
+}
+
 void make_private(const fs::path& file) {
   std::error_code code;
   fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write, code);
 }
 
-}  // namespace stylet::serve
+}  // namespace stylet::detail
