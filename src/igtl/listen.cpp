@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/core/survive.hpp"
 #include "transport.hpp"
 
 #include <fmt/format.h>
@@ -23,7 +24,9 @@ class Listener final : public Transport {
       if (hub_.full()) {
         hub_.turn_away();  // the socket closes here
       } else {
-        hub_.add(std::move(socket), {});
+        survive(
+            "a new OpenIGTLink connection", [&] { hub_.add(std::move(socket), {}); },
+            [this](const Error& why) { hub_.set_problem(why.what); });
       }
       start();
     });

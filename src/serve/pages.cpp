@@ -3,10 +3,12 @@
 
 #include "assets.hpp"
 
+#include "io/record/json.hpp"
+#include "stylet/core/printable.hpp"
 #include "stylet/io/run_recorder.hpp"
 #include "stylet/sim/recorded_steps.hpp"
 
-#include <nlohmann/json.hpp>
+#include <algorithm>
 
 namespace stylet::serve {
 
@@ -36,6 +38,13 @@ HttpResponse asset(const HttpRequest& request, const char* type, std::string_vie
   return r;
 }
 
+/// A name for a header, in which other characters would end the name or the header.
+std::string plain_file_name(std::string name) {
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c < ' ' || c > '~' || c == '"' || c == '\\'; }, '_');
+  return name;
+}
+
 std::string_view header(const HttpRequest& request, http::field field) {
   const auto value = request[field];
   return {value.data(), value.size()};
@@ -50,14 +59,14 @@ Access::Verdict Pages::verdict(const HttpRequest& request) const {
 }
 
 HttpResponse Pages::refusal(const HttpRequest& request, http::status status, const std::string& why) {
-  return response(request, status, "text/plain; charset=utf-8", why + "\n");
+  return response(request, status, "text/plain; charset=utf-8", printable_lines(why) + "\n");
 }
 
 /// The list holds names only, because opening each recording would take seconds.
 HttpResponse Pages::recordings(const HttpRequest& request) const {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  record::Json list = record::Json::array();
   for (const std::string& name : shelf_.names()) list.push_back({{"name", name}});
-  return response(request, http::status::ok, "application/json", list.dump());
+  return response(request, http::status::ok, "application/json", record::compact(list));
 }
 
 /// The force curve of a recording. @param path NAME/forces.csv
@@ -70,7 +79,7 @@ HttpResponse Pages::recording(const HttpRequest& request, std::string_view path)
   if (!run) return refusal(request, http::status::not_found, run.error().message());
   HttpResponse r =
       response(request, http::status::ok, "text/csv; charset=utf-8", forces_csv_text(with_ends_of_rests(run->steps)));
-  r.set(http::field::content_disposition, "attachment; filename=\"" + name + ".csv\"");
+  r.set(http::field::content_disposition, "attachment; filename=\"" + plain_file_name(name) + ".csv\"");
   return r;
 }
 

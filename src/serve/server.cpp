@@ -2,9 +2,11 @@
 #include "stylet/serve/server.hpp"
 
 #include "access.hpp"
+#include "complaints.hpp"
 #include "hall.hpp"
 #include "kept_token.hpp"
 #include "pages.hpp"
+#include "stylet/core/survive.hpp"
 
 #include <fmt/format.h>
 #include <boost/asio/io_context.hpp>
@@ -39,6 +41,7 @@ constexpr int kNiceReading = 10;  // lower priority than the loop and its record
 struct Server::Parts {
   Parts(ServerSettings settings_, Access access_)
       : settings(std::move(settings_)),
+        complaints(settings.session.say),
         access(std::move(access_)),
         acceptor(io),
         retry(io),
@@ -46,6 +49,7 @@ struct Server::Parts {
         hall(io, settings.session) {}
 
   ServerSettings settings;
+  Complaints complaints;
   Access access;
   asio::io_context io{1};
   tcp::acceptor acceptor;
@@ -60,11 +64,24 @@ struct Server::Parts {
     acceptor.async_accept([this](beast::error_code error, tcp::socket socket) {
       if (error == asio::error::operation_aborted) return;
       if (error) return accept_later();
-      beast::error_code ignored;
-      socket.set_option(tcp::no_delay(true), ignored);
-      read_request(std::make_shared<beast::tcp_stream>(std::move(socket)));
+      survive(
+          "a new connection",
+          [&] {
+            beast::error_code ignored;
+            socket.set_option(tcp::no_delay(true), ignored);
+            read_request(std::make_shared<beast::tcp_stream>(std::move(socket)));
+          },
+          [this](const Error& why) { complaints.tell(why); });
       accept();
     });
+  }
+  /// Does the work of `io` until it is stopped. An exception of a piece of work that does not survive by itself ends
+  /// that piece, and at most the connection that it belongs to.
+  void run() {
+    const auto tell = [this](const Error& why) { complaints.tell(why); };
+    while (!io.stopped())
+      survive(
+          "the connections", [this] { io.run(); }, tell);
   }
   /// Accepts again after a pause. Used after an error that would recur at once, such as too many open files.
   void accept_later() {
@@ -98,7 +115,15 @@ struct Server::Parts {
     // Reading a recording takes a while, so another thread does it; here all viewers would have to wait.
     stream->expires_never();
     asio::post(readers, [this, stream, request] {
-      asio::post(io, [this, stream, response = pages.answer(request)] { write(stream, response); });
+      const auto respond = [&](HttpResponse response) {
+        asio::post(io, [this, stream, made = std::move(response)] { write(stream, made); });
+      };
+      survive(
+          "a request to the server", [&] { respond(pages.answer(request)); },
+          [&](const Error& why) {
+            complaints.tell(why);
+            respond(Pages::refusal(request, http::status::internal_server_error, why.message() + '.'));
+          });
     });
   }
   void write(const std::shared_ptr<beast::tcp_stream>& stream, HttpResponse made) {
@@ -188,7 +213,7 @@ void Server::start() {
   Parts& p = *parts_;
   p.accept();
   asio::post(p.readers, [] { (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceReading); });
-  p.thread = std::thread([&p] { p.io.run(); });
+  p.thread = std::thread([&p] { p.run(); });
   p.hall.session().start();
 }
 
