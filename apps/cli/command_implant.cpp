@@ -3,6 +3,7 @@
 #include "early_warnings.hpp"
 #include "output_path.hpp"
 #include "table.hpp"
+#include "validators.hpp"
 
 #include "stylet/io/dose_input.hpp"
 #include "stylet/io/patient_record_io.hpp"
@@ -261,7 +262,7 @@ Command add_implant_command(CLI::App& program) {
   option(app, "--compensate", arguments->compensate, "ROUNDS",
          "Aim the needles beside the plan so that their seeds come to rest where they were planned, correcting the "
          "aim this many times, and show before and after")
-      ->check(CLI::Range(0, 20));
+      ->check(whole_number_between(0, 20));
   app->add_flag("--span", arguments->span,
                 "Also implant in firm and in soft tissue, to show how sure the figures are; takes three times as long");
   option(app, "--found", arguments->found, "SEEDS.csv|RTPLAN",

@@ -257,7 +257,7 @@ Command add_serve_command(CLI::App& program) {
   option(app, "--keep", arguments->keep_GB, "GB",
          "Gigabytes that all recordings may take together; the oldest are removed when they take more; 0 sets no limit")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(number_between(0.0, 1e6, "GB"));
   option(app, "--models", arguments->models, "MODELS/",
          "Folder in which compiled models are kept, so that a case opens at once the next time (default: "
          "~/.cache/stylet/models); \"\" keeps none");

@@ -4,6 +4,7 @@
 #include "output_path.hpp"
 #include "progress_display.hpp"
 
+#include "stylet/core/json_text.hpp"
 #include "stylet/core/printable.hpp"
 
 #include <fmt/format.h>
@@ -13,6 +14,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <mutex>
 #include <set>
 
 namespace stylet::cli {
@@ -41,14 +43,15 @@ struct Console::Parts {
   bool output_is_open = true;
   std::string output_lost;                 ///< why standard output cannot be written; empty: it can
   int json_descriptor = -1;                ///< the real standard output while --json - redirects stdout to stderr
+  std::mutex mutex;                        ///< guards the next member: stylet serve warns from several threads
   std::set<std::string> told;              ///< warnings that were given ahead
   std::weak_ptr<ProgressDisplay> display;  ///< exists while progress may be reported
 
   /// Prints a line. Every text of the program passes here on its way to the terminal, so this is where control
-  /// characters that a file has brought into it are replaced. @return the reason if it could not be printed, otherwise
-  /// empty
+  /// characters that a file has brought into it are replaced and long quoted texts cut. @return the reason if it could
+  /// not be printed, otherwise empty
   std::string line(std::FILE* stream, std::string_view prefix, std::string_view text) const {
-    const std::string all = fmt::format("{}{}\n", prefix, printable_lines(text));
+    const std::string all = fmt::format("{}{}\n", prefix, with_short_quotes(printable_lines(text)));
     std::string reason;
     const auto print = [&] {
       if (std::fwrite(all.data(), 1, all.size(), stream) == all.size() && std::fflush(stream) == 0) return;
@@ -100,12 +103,16 @@ void Console::detail(std::string_view text) {
 }
 
 void Console::warn(std::string_view text) {
-  if (parts_->told.erase(std::string(text)) > 0) return;
+  {
+    const std::lock_guard lock(parts_->mutex);
+    if (parts_->told.erase(std::string(text)) > 0) return;
+  }
   parts_->line(stderr, "stylet: warning: ", text);
 }
 
 void Console::warn_ahead(const std::string& text) {
   warn(text);
+  const std::lock_guard lock(parts_->mutex);
   parts_->told.insert(text);
 }
 
@@ -115,17 +122,15 @@ Progress Console::progress() {
   if (parts_->options.quiet) return {};
   auto display = std::make_shared<ProgressDisplay>(stderr_is_terminal());
   parts_->display = display;
-  return [display](std::string_view stage, double fraction) { display->update(printable(stage), fraction); };
+  return [display](std::string_view stage, double fraction) { display->update(stage, fraction); };
 }
 
 Result<> Console::write_json(const Json& json) {
   const std::string& target = parts_->options.json;
   if (target.empty()) return Ok{};
-  // Names from files may be in any encoding; JSON is UTF-8.
-  const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  const std::string text = json_text(json, 2) + '\n';
   if (target != "-") return write_text_file(target, text);
-  // JSON escapes the control characters of ASCII only.
-  if (!write_all(parts_->json_descriptor, printable_lines(text))) {
+  if (!write_all(parts_->json_descriptor, text)) {
     return failure("--json -", std::string("writing to standard output failed: ") + std::strerror(errno),
                    "Check the file or program that receives it");
   }

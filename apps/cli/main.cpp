@@ -117,8 +117,8 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     console.error("out of memory. Use a coarser mesh (--nodes) or a machine with more memory");
   } catch (const std::exception& unexpected) {
-    console.error(
-        fmt::format("unexpected failure: {}. Please report it with the command line and the input", unexpected.what()));
+    console.detail(fmt::format("the fault says of itself: {}", unexpected.what()));
+    console.error("unexpected failure. Please report it with the command line and the input");
   }
   return kFailed;
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "progress_display.hpp"
 
+#include "stylet/core/printable.hpp"
+#include "stylet/core/survive.hpp"
+
 #include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -46,7 +49,7 @@ ProgressDisplay::~ProgressDisplay() {
 
 void ProgressDisplay::update(std::string_view stage, double fraction) {
   const std::scoped_lock lock(mutex_);
-  stage_ = stage;
+  stage_ = printable_name(stage);
   fraction_ = std::clamp(fraction, 0.0, 1.0);
 }
 
@@ -61,7 +64,8 @@ void ProgressDisplay::run() {
   auto pause = std::chrono::duration_cast<Clock::duration>(kSilence);
   while (!wake_.wait_for(lock, pause, [this] { return finished_; })) {
     pause = kRedrawEvery;
-    show();
+    survive(
+        "the display of progress", [this] { show(); }, [](const Error&) {});
   }
 }
 

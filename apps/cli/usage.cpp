@@ -86,6 +86,21 @@ std::string explain_word(const CLI::App& program, const CLI::App& app, const std
                      is_output ? fmt::format("; an output is given with -o {}", words.front()) : "");
 }
 
+/// A message of the parser about the value of an option in plainer words. Those of validators (validators.hpp) and
+/// about options that are required or exclude each other stay.
+std::string explain_value(const std::string& message) {
+  constexpr std::string_view kNotConverted = "Could not convert: ";
+  const auto equals = message.find(" = ");
+  if (message.starts_with(kNotConverted) && equals != std::string::npos) {
+    return fmt::format("'{}' is no value of {}", message.substr(equals + 3),
+                       message.substr(kNotConverted.size(), equals - kNotConverted.size()));
+  }
+  const auto colon = message.find(": ");
+  if (colon != std::string::npos && message.find(" required ") != std::string::npos)
+    return fmt::format("{} lacks a value", message.substr(0, colon));
+  return message;
+}
+
 }  // namespace
 
 bool is_command(const std::string& word, const CLI::App& program) {
@@ -113,7 +128,7 @@ std::string explain(const CLI::ParseError& error, const CLI::App& program) {
   } else if (&app == &program && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
     what = fmt::format("no command given; the commands are {}", fmt::join(command_names(program), ", "));
   } else {
-    what = error.what();
+    what = explain_value(error.what());
   }
   while (!what.empty() && (what.back() == '\n' || what.back() == '.')) what.pop_back();
   const bool done = !what.empty() && what.back() == '?';

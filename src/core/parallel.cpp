@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/core/parallel.hpp"
 
+#include "stylet/core/survive.hpp"
+
 #include <algorithm>
 #include <atomic>
 #include <exception>
@@ -38,7 +40,12 @@ void for_each_in_parallel(std::size_t count, const std::function<void(std::size_
   const std::size_t threads = most_threads > 0 ? static_cast<std::size_t>(most_threads) : cores;
   {
     std::vector<std::jthread> helpers;
-    for (std::size_t k = 1; k < std::min(threads, count); ++k) helpers.emplace_back([&go] { go(false); });
+    for (std::size_t k = 1; k < std::min(threads, count); ++k) {
+      // Where the system provides no further thread, those that are there do the work.
+      if (!survive(
+              "a thread of its own", [&] { helpers.emplace_back([&go] { go(false); }); }, [](const Error&) {}))
+        break;
+    }
     go(true);
   }
   if (thrown) std::rethrow_exception(thrown);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "connection.hpp"
 
+#include "stylet/core/survive.hpp"
+
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 
@@ -40,7 +42,11 @@ void Connection::read() {
   socket_.async_read_some(asio::buffer(room_), [self = shared_from_this()](const error_code& error, std::size_t n) {
     if (self->closed_) return;
     if (error) return self->close();
-    const auto ok = self->reader_.take(std::span(self->room_).first(n), self->events_.message);
+    Result<> ok = Ok{};
+    survive(
+        "an OpenIGTLink message",
+        [&] { ok = self->reader_.take(std::span(self->room_).first(n), self->events_.message); },
+        [&](const Error& why) { ok = failure(why.where, "something at which this program failed", why.cure); });
     if (!ok) return self->close(ok.error());
     self->read();
   });

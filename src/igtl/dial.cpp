@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/core/survive.hpp"
 #include "transport.hpp"
 
 #include <boost/asio/connect.hpp>
@@ -48,7 +49,12 @@ class Dialer final : public Transport {
       }
       if (to_itself()) return retry();
       pause_s_ = settings_.retry_s;
-      hub_.add(std::move(socket_), [this] { retry(); });
+      survive(
+          "a new OpenIGTLink connection", [this] { hub_.add(std::move(socket_), [this] { retry(); }); },
+          [this](const Error& why) {
+            hub_.set_problem(why.what);
+            retry();
+          });
     });
   }
 

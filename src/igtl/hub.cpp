@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hub.hpp"
 
+#include "stylet/core/printable.hpp"
 #include "stylet/core/secret.hpp"
 
 #include <fmt/format.h>
@@ -69,7 +70,7 @@ void Hub::hear(ConnectionId from, const Incoming& message) {
   const bool has_pose = named || message.type == "TRANSFORM" || message.type == "POSITION" || message.type == "TDATA" ||
                         message.type == "QTDATA";
   if (!used && has_pose && message.kind != Incoming::Kind::status)
-    counted_.unused = fmt::format("{} '{}'", message.type, printable(message.name));
+    counted_.unused = fmt::format("{} '{}'", message.type, printable_name(message.name));
 }
 
 void Hub::turn_away(const std::string& why) {

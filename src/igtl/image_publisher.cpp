@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/igtl/image_publisher.hpp"
 
+#include "stylet/core/survive.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,7 +33,12 @@ struct ImagePublisher::Parts {
     std::unique_lock lock(mutex);
     while (!end) {
       lock.unlock();
-      if (source(image)) (void)link.publish_image(image);
+      survive(
+          "the image for OpenIGTLink",
+          [&] {
+            if (source(image)) (void)link.publish_image(image);
+          },
+          [](const Error&) {});
       lock.lock();
       due = std::max(due + period, std::chrono::steady_clock::now());
       ends.wait_until(lock, due, [this] { return end; });
@@ -54,7 +61,8 @@ Result<std::unique_ptr<ImagePublisher>> ImagePublisher::start(Link& link, Source
   try {
     parts->thread = std::thread([&p = *parts] { p.run(); });
   } catch (const std::system_error& error) {
-    return failure("OpenIGTLink", fmt::format("no thread can be started: {}", error.what()), "End other programs");
+    return failure("OpenIGTLink", fmt::format("no thread can be started: {}", error.code().message()),
+                   "End other programs");
   }
   return std::unique_ptr<ImagePublisher>(new ImagePublisher(std::move(parts)));
 }

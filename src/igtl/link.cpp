@@ -3,6 +3,7 @@
 
 #include "check_settings.hpp"
 #include "sender.hpp"
+#include "stylet/core/survive.hpp"
 #include "tracked_device.hpp"
 #include "transport.hpp"
 
@@ -29,6 +30,14 @@ struct Link::Parts {
   Sender sender;
   std::unique_ptr<Transport> transport;
   std::thread thread;
+
+  /// Does the work of `io` until it is stopped. An exception ends one piece of work, and the link goes on.
+  void run() {
+    const auto tell = [this](const Error& why) { hub.set_problem(why.what); };
+    while (!io.stopped())
+      survive(
+          "OpenIGTLink", [this] { io.run(); }, tell);
+  }
 };
 
 Link::Link(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -43,9 +52,10 @@ Result<std::unique_ptr<Link>> Link::open(const LinkSettings& settings) {
   p.sender.start();
   p.transport->start();
   try {
-    p.thread = std::thread([&io = p.io] { io.run(); });
+    p.thread = std::thread([&p] { p.run(); });
   } catch (const std::system_error& error) {
-    return failure("OpenIGTLink", fmt::format("no thread can be started: {}", error.what()), "End other programs");
+    return failure("OpenIGTLink", fmt::format("no thread can be started: {}", error.code().message()),
+                   "End other programs");
   }
   return std::unique_ptr<Link>(new Link(std::move(parts)));
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "own_process.hpp"
+#include "stylet/core/survive.hpp"
 #include "transport.hpp"
 
 #include <fmt/format.h>
@@ -26,7 +27,9 @@ class Listener final : public Transport {
       if (const std::string why_not = hub_.why_not(trust); !why_not.empty()) {
         hub_.turn_away(why_not);  // the socket closes here
       } else {
-        hub_.add(std::move(socket), {}, trust);
+        survive(
+            "a new OpenIGTLink connection", [&] { hub_.add(std::move(socket), {}, trust); },
+            [this](const Error& why) { hub_.set_problem(why.what); });
       }
       start();
     });

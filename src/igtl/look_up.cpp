@@ -16,8 +16,7 @@ Result<Endpoints> look_up(boost::asio::io_context& io, const LinkSettings& setti
   if (!error)
     for (const auto& entry : found) endpoints.push_back(entry.endpoint());
   if (endpoints.empty())
-    return input_error("OpenIGTLink, host",
-                       fmt::format("'{}' is not known ({})", settings.host, error ? error.message() : "no address"),
+    return input_error("OpenIGTLink, host", fmt::format("'{}' is not known", settings.host),
                        "Give a host name or an IP address, such as 127.0.0.1 for this machine");
   return endpoints;
 }

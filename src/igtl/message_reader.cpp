@@ -67,12 +67,6 @@ std::size_t big32(const std::uint8_t* at) { return boost::endian::load_big_u32(a
 
 }  // namespace
 
-std::string printable(std::string name) {
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return name;
-}
-
 Result<> MessageReader::read_header() {
   igtl_header h;
   std::memcpy(&h, header_.data(), sizeof h);
@@ -102,8 +96,8 @@ Result<> MessageReader::read_header() {
 
 Result<> MessageReader::read_body(Incoming& message) {
   if (options_.checksums && crc64(body_.data(), body_.size(), 0) != crc_) {
-    return garbage(fmt::format("a {} '{}' whose body does not match its checksum{}", message.type,
-                               printable(message.name), crc_ == 0 ? ", which is 0" : ""),
+    return garbage(fmt::format("a {} '{}' whose body does not match its checksum{}", message.type, message.name,
+                               crc_ == 0 ? ", which is 0" : ""),
                    "Let the other program compute checksums (CRC-64), or switch their check off here");
   }
   std::span<const std::uint8_t> content(body_);

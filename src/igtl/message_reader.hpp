@@ -26,9 +26,6 @@ struct Incoming {
 /// Name of the STRING with which a program gives the token.
 inline constexpr const char* kTokenName = "Token";
 
-/// A received name for people: bytes beyond printable ASCII become '?'.
-std::string printable(std::string name);
-
 /// Decodes messages from the bytes of a connection, in pieces of any size. The bytes are not trusted: the length in the
 /// header is checked before the body is stored, and only bodies of at most kKept bytes are stored. Bodies of other
 /// types are skipped. Reads header versions 1 and 2 (protocols 1 to 3); skips metadata. A POSITION is given as the

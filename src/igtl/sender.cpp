@@ -2,6 +2,7 @@
 #include "sender.hpp"
 
 #include "ras.hpp"
+#include "stylet/core/survive.hpp"
 
 #include <fmt/format.h>
 
@@ -56,7 +57,8 @@ void Sender::wait() {
   timer_.async_wait([this](const boost::system::error_code& error) {
     if (error) return;
     const auto now = Clock::now();
-    turn(now);
+    survive(
+        "sending by OpenIGTLink", [&] { turn(now); }, [this](const Error& why) { hub_.set_problem(why.what); });
     // The times lie on a regular grid; missed turns are not made up for.
     timer_.expires_at(std::max(timer_.expiry() + period(settings_.poses_hz), now));
     wait();

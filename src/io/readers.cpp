@@ -41,15 +41,16 @@ Result<> check_reach(const ContourSet& set, const Roi& roi) {
   return Ok{};
 }
 
-void make_printable(std::vector<std::string>& texts) {
-  for (std::string& text : texts) text = printable(text);
+/// Notes quote names of the file.
+void make_printable(std::vector<std::string>& notes) {
+  for (std::string& note : notes) note = with_short_quotes(printable(note));
 }
 
 /// Makes the names of labels safe to show.
 Result<LabelImage> with_printable_names(Result<LabelImage> read) {
   if (!read) return read;
-  for (auto& [label, name] : read->names) name = printable(name);
-  for (auto& [label, meaning] : read->meanings) meaning = printable(meaning);
+  for (auto& [label, name] : read->names) name = printable_name(name);
+  for (auto& [label, meaning] : read->meanings) meaning = printable_name(meaning);
   make_printable(read->notes);
   return read;
 }
@@ -58,9 +59,9 @@ Result<LabelImage> with_printable_names(Result<LabelImage> read) {
 /// out of reach is left out instead.
 Result<ContourSet> within_reach(Result<ContourSet> read, std::span<const std::string> skip) {
   if (!read) return read;
-  read->label = printable(read->label);
-  for (Roi& roi : read->rois) roi.name = printable(roi.name);
-  for (PassedOver& structure : read->passed_over) structure.name = printable(structure.name);
+  read->label = printable_name(read->label);
+  for (Roi& roi : read->rois) roi.name = printable_name(roi.name);
+  for (PassedOver& structure : read->passed_over) structure.name = printable_name(structure.name);
   make_printable(read->notes);
   std::vector<Roi> in_reach;
   for (Roi& roi : read->rois) {
@@ -153,7 +154,7 @@ Result<std::vector<Surface>> read_surfaces(const fs::path& path, const MeshReadO
   }
   Result<SurfacesWithNotes> read = detail::ask(detail::kSurfaces, path, *kind, options.scale);
   if (!read) return read.error();
-  for (Surface& surface : read->surfaces) surface.name = printable(surface.name);
+  for (Surface& surface : read->surfaces) surface.name = printable_name(surface.name);
   make_printable(read->notes);
   if (options.notes != nullptr) options.notes->insert(options.notes->end(), read->notes.begin(), read->notes.end());
   return std::move(read->surfaces);

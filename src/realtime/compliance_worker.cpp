@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/realtime/compliance_worker.hpp"
 
+#include "stylet/core/survive.hpp"
 #include "thread_setup.hpp"
 
 #include <chrono>
@@ -36,7 +37,9 @@ void ComplianceWorker::run() noexcept {
   yield_to_others();
   while (!stop_.load(std::memory_order_relaxed)) {
     using Work = ComplianceSupply::Work;
-    const Work done = supply_.work(kAtOnce);
+    Work done = Work::failed;
+    survive(
+        "the compliance ahead of the needle", [&] { done = supply_.work(kAtOnce); }, [](const Error&) {});
     if (done == Work::done) continue;
     // After a failure to allocate memory, wait longer before the next attempt.
     const int looks = done == Work::failed ? kLooksAfterFailure : 1;

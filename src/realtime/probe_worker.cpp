@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/realtime/probe_worker.hpp"
 
+#include "stylet/core/survive.hpp"
 #include "thread_setup.hpp"
 
 #include <chrono>
@@ -59,7 +60,8 @@ void ProbeWorker::run() noexcept {
   yield_to_others();
   while (!stop_.load(std::memory_order_relaxed)) {
     if (pose_.fetch()) {
-      answer_pose(pose_.value());
+      survive(
+          "the press of the probe", [this] { answer_pose(pose_.value()); }, [](const Error&) {});
     } else {
       std::this_thread::sleep_for(kLookForPose);
     }

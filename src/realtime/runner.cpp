@@ -123,7 +123,7 @@ Result<> RealtimeRunner::start() {
     p.exchange.stop.store(true, std::memory_order_release);
     first_turn.set_value(monotonic_ns());
     p.join();
-    return failure("real-time runner", fmt::format("the system provides no thread: {}", error.what()),
+    return failure("real-time runner", fmt::format("the system provides no thread: {}", error.code().message()),
                    "Raise the limit on the number of threads");
   }
   p.rights = of_step.get();

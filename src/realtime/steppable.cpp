@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/realtime/steppable.hpp"
 
+#include "stylet/core/survive.hpp"
+
 #include <algorithm>
 
 namespace stylet {
@@ -29,10 +31,15 @@ SimulationSteppable::SimulationSteppable(const std::shared_ptr<const Model>& mod
 Pose SimulationSteppable::base() const noexcept { return simulation_.insertion().needle().base(); }
 
 StepOutcome SimulationSteppable::step(const Pose& base, double dt) noexcept {
-  const Step& step = simulation_.step(base, dt);
-  regions_.follow(simulation_.insertion());
-  tip_.follow(simulation_.insertion(), step);
-  return {{step.hand_force_N, step.torque_Nmm}, (step.flags & Step::kDistrusted) == 0};
+  StepOutcome outcome;  // not trusted
+  const auto take = [&] {
+    const Step& step = simulation_.step(base, dt);
+    regions_.follow(simulation_.insertion());
+    tip_.follow(simulation_.insertion(), step);
+    outcome = {{step.hand_force_N, step.torque_Nmm}, (step.flags & Step::kDistrusted) == 0};
+  };
+  survive("a step of the needle", take, [](const Error&) {});
+  return outcome;
 }
 
 void SimulationSteppable::describe(Snapshot& out) noexcept {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "disk_watch.hpp"
 
+#include "stylet/core/survive.hpp"
+
 #include <utility>
 
 namespace stylet::serve {
@@ -42,9 +44,15 @@ void DiskWatch::run(const std::stop_token& stop) {
     if (stop.stop_requested()) return;
     seen = turn_;
     lock.unlock();
-    RoomReport now = look_();
-    tell(told, now);
-    told = now;
+    RoomReport now;
+    survive(
+        "the folder of recordings",
+        [&] {
+          now = look_();
+          tell(told, now);
+          told = now;
+        },
+        [&](const Error& why) { now.warning = "the free space is not known: " + why.what; });
     lock.lock();
     if (seen == turn_) report_ = std::move(now);
     wake_.wait_for(lock, stop, every_, [&] { return seen != turn_; });

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "field_maker.hpp"
 
+#include "stylet/core/survive.hpp"
+
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <new>
 #include <utility>
 
 namespace stylet::serve {
@@ -44,8 +45,7 @@ void FieldMaker::wait(std::chrono::duration<double> longest) {
   (void)woken_.wait_for(lock, longest, [this] { return begins_; });
 }
 
-void FieldMaker::make(std::shared_ptr<const Model> model) {
-  (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice);
+void FieldMaker::prepare(std::shared_ptr<const Model> model) {
   const Progress progress = [this](std::string_view stage, double fraction) {
     if (given_up_) throw GivenUp();
     const bool first = stage == "display: choosing columns";
@@ -53,10 +53,21 @@ void FieldMaker::make(std::shared_ptr<const Model> model) {
   };
   try {
     if (given_up_) throw GivenUp();
-    if (auto field = DisplayField::prepare(std::move(model), {}, progress)) made_ = std::move(*field);
+    auto field = DisplayField::prepare(std::move(model), {}, progress);
+    if (field) {
+      made_ = std::move(*field);
+    } else {
+      problem_ = field.error().what;
+    }
   } catch (const GivenUp&) {  // nobody needs the field
-  } catch (const std::bad_alloc&) {
   }
+}
+
+void FieldMaker::make(std::shared_ptr<const Model> model) {
+  (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice);
+  survive(
+      "the picture of the tissue's motion", [&] { prepare(std::move(model)); },
+      [&](const Error& why) { problem_ = why.what; });
   done_.store(true, std::memory_order_release);
 }
 

@@ -8,6 +8,7 @@
 #include <condition_variable>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <thread>
 
 namespace stylet::serve {
@@ -30,12 +31,15 @@ class FieldMaker {
   /// The part of the work that is done, 0…1.
   [[nodiscard]] double fraction() const { return fraction_.load(std::memory_order_relaxed); }
   [[nodiscard]] bool done() const { return done_.load(std::memory_order_acquire); }
-  /// The field. Read it only when done() is true. Empty: the work was given up, or there was too little memory.
+  /// The field. Read it and the next only when done() is true. Empty: the work was given up, or failed.
   [[nodiscard]] const std::shared_ptr<const DisplayField>& field() const { return made_; }
+  /// Why the work failed; empty: it did not.
+  [[nodiscard]] const std::string& problem() const { return problem_; }
 
  private:
   void wait(std::chrono::duration<double> longest);
   void make(std::shared_ptr<const Model> model);
+  void prepare(std::shared_ptr<const Model> model);
 
   std::mutex mutex_;
   std::condition_variable woken_;
@@ -44,6 +48,7 @@ class FieldMaker {
   std::atomic<bool> given_up_ = false;
   std::atomic<bool> done_ = false;
   std::shared_ptr<const DisplayField> made_;
+  std::string problem_;
   std::jthread thread_;  ///< last member, so that it starts when the others exist
 };
 

@@ -57,6 +57,7 @@ void Hall::show(const Message& message) {
   }
   if (const auto* refusal = std::get_if<Refusal>(&message)) {
     boost::asio::post(io_, [this, id = refusal->viewer, notice = parcel_of(refusal->why)] {
+      if (id == 0) return to_each([&](Viewer& viewer) { viewer.send(notice); });
       if (const auto found = viewers_.find(id); found != viewers_.end()) found->second->send(notice);
     });
     return;

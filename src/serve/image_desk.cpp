@@ -3,6 +3,7 @@
 
 #include "image_maker.hpp"
 
+#include "stylet/core/survive.hpp"
 #include "stylet/realtime/steppable.hpp"
 
 #include <algorithm>
@@ -15,6 +16,7 @@ namespace {
 
 constexpr std::array<const char*, 4> kShownImages{"none", "transverse", "sagittal", "xray"};
 constexpr auto kImageEvery = std::chrono::milliseconds(40);  // a picture takes less; the rest is left to the loop
+constexpr auto kImageAfterFailure = std::chrono::milliseconds(1000);
 
 }  // namespace
 
@@ -41,38 +43,63 @@ ShownImage ImageDesk::kind() const {
   return tables_.tables().ultrasound.array == UltrasoundArray::sagittal ? ShownImage::sagittal : ShownImage::transverse;
 }
 
-/// Takes up what has come, makes a picture of it, and waits until the next one is due.
+/// Makes a picture of what has come.
+void ImageDesk::make_picture(ImageMaker& maker, std::variant<std::monostate, LoopState, Moment> state) {
+  const auto tell = [&](const std::string& what) {
+    const std::lock_guard lock(mutex_);
+    stage_ = what;
+  };
+  if (const auto* loop = std::get_if<LoopState>(&state))
+    maker.take(loop->time_s, loop->forces, loop->needle, loop->seeds);
+  if (auto* moment = std::get_if<Moment>(&state)) maker.take(std::move(*moment));
+  auto image = maker.make(tell);
+  const std::lock_guard lock(mutex_);
+  problem_ = image ? maker.remark() : image.error().what + ". " + image.error().cure + ".";
+  made_ = image ? *std::move(image) : nullptr;
+}
+
+/// Waits for something to make a picture of, and makes it. @return when that began; empty if the thread is to stop
+std::optional<ImageDesk::Clock::time_point> ImageDesk::take_turn(ImageMaker& maker, std::optional<ImageSubject>& opened,
+                                                                 const std::stop_token& stop) {
+  std::variant<std::monostate, LoopState, Moment> state;
+  {
+    std::unique_lock lock(mutex_);
+    const bool go_on = wake_.wait(lock, stop, [&] {
+      return kind() != ShownImage::none &&
+             (is_changed_ || patient_ || !std::holds_alternative<std::monostate>(newest_));
+    });
+    if (!go_on) return std::nullopt;
+    if (patient_) {
+      opened = std::exchange(patient_, std::nullopt);
+      maker.open(*opened);
+    }
+    if (tables_.is_moved()) tables_.follow(maker.seat());
+    maker.set(kind(), tables_.tables(), is_serving_);
+    is_changed_ = false;
+    state = std::exchange(newest_, std::monostate{});
+  }
+  const auto begun = Clock::now();
+  make_picture(maker, std::move(state));
+  return begun;
+}
+
 void ImageDesk::run(const std::stop_token& stop) {
   ImageMaker maker;
+  std::optional<ImageSubject> opened;
   while (!stop.stop_requested()) {
-    std::variant<std::monostate, LoopState, Moment> state;
-    {
-      std::unique_lock lock(mutex_);
-      const bool go_on = wake_.wait(lock, stop, [&] {
-        return kind() != ShownImage::none &&
-               (is_changed_ || patient_ || !std::holds_alternative<std::monostate>(newest_));
-      });
-      if (!go_on) return;
-      if (patient_) maker.open(*std::exchange(patient_, std::nullopt));
-      if (tables_.is_moved()) tables_.follow(maker.seat());
-      maker.set(kind(), tables_.tables(), is_serving_);
-      is_changed_ = false;
-      state = std::exchange(newest_, std::monostate{});
-    }
-    const auto begun = std::chrono::steady_clock::now();
-    const auto tell = [&](const std::string& what) {
-      const std::lock_guard lock(mutex_);
-      stage_ = what;
-    };
-    if (const auto* loop = std::get_if<LoopState>(&state))
-      maker.take(loop->time_s, loop->forces, loop->needle, loop->seeds);
-    if (auto* moment = std::get_if<Moment>(&state)) maker.take(std::move(*moment));
-    auto image = maker.make(tell);
+    std::optional<Clock::time_point> begun = Clock::now();
+    const bool is_made = survive(
+        "the image", [&] { begun = take_turn(maker, opened, stop); },
+        [&](const Error& why) {
+          const std::lock_guard lock(mutex_);
+          problem_ = why.what + ". " + why.cure + ".";
+          made_ = nullptr;
+          if (!patient_) patient_ = opened;  // what was prepared for it may be incomplete
+        });
+    if (!begun) return;
     std::unique_lock lock(mutex_);
     stage_.clear();
-    problem_ = image ? maker.remark() : image.error().what + ". " + image.error().cure + ".";
-    made_ = image ? *std::move(image) : nullptr;
-    wake_.wait_until(lock, stop, begun + kImageEvery, [] { return false; });
+    wake_.wait_until(lock, stop, *begun + (is_made ? kImageEvery : kImageAfterFailure), [] { return false; });
   }
 }
 

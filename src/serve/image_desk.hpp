@@ -8,6 +8,7 @@
 #include "stylet/sim/display_field.hpp"
 #include "stylet/sim/scenario.hpp"
 
+#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <memory>
@@ -19,6 +20,8 @@
 #include <vector>
 
 namespace stylet::serve {
+
+class ImageMaker;
 
 /// The patient whose pictures are made: of the open model, or of a recording.
 struct ImageSubject {
@@ -81,7 +84,11 @@ class ImageDesk {
   [[nodiscard]] Report report() const;
 
  private:
+  using Clock = std::chrono::steady_clock;
   void run(const std::stop_token& stop);
+  std::optional<Clock::time_point> take_turn(ImageMaker& maker, std::optional<ImageSubject>& opened,
+                                             const std::stop_token& stop);
+  void make_picture(ImageMaker& maker, std::variant<std::monostate, LoopState, Moment> state);
   [[nodiscard]] ShownImage kind() const;
   void change(const std::function<void()>& what);
 

@@ -3,6 +3,7 @@
 
 #include "core/clock.hpp"
 #include "scene_points.hpp"
+#include "stylet/core/json_text.hpp"
 #include "stylet/imaging/fluoroscope.hpp"
 #include "stylet/imaging/pressing_probe.hpp"
 #include "stylet/imaging/scan_conversion.hpp"
@@ -265,22 +266,21 @@ Result<std::shared_ptr<const LiveImage>> ImageMaker::Parts::ultrasound() {
   image->pixels.assign(picture.grey.begin(), picture.grey.end());
   image->probe = pose_of(place);
   if (in_patient) image->in_patient = converted(picture);
-  image->text = ImageJson{{"modality", "ultrasound"},
-                          {"time_s", moment.time_s},
-                          {"array", to_string(shown)},
-                          {"radius_mm", beams.surface_mm},
-                          {"depth_mm", beams.sample_mm * (beams.samples - 1)},
-                          {"focus_mm", tables.ultrasound.focus_mm},
-                          {"sector_deg", beams.sector ? width * 180.0 / std::numbers::pi : 0.0},
-                          {"first_mm", beams.sector ? 0.0 : beams.first},
-                          {"length_mm", beams.sector ? 0.0 : width},
-                          {"range_dB", kImageRange_dB},
-                          {"origin_mm", json_of(beams.origin_mm)},
-                          {"right", json_of(beams.across)},
-                          {"up", json_of(beams.ahead)},
-                          {"probe", probe_json(place, force_N)},
-                          {"took_ms", 1e-6 * static_cast<double>(thread_cpu_ns() - before)}}
-                    .dump();
+  image->text = json_text(ImageJson{{"modality", "ultrasound"},
+                                    {"time_s", moment.time_s},
+                                    {"array", to_string(shown)},
+                                    {"radius_mm", beams.surface_mm},
+                                    {"depth_mm", beams.sample_mm * (beams.samples - 1)},
+                                    {"focus_mm", tables.ultrasound.focus_mm},
+                                    {"sector_deg", beams.sector ? width * 180.0 / std::numbers::pi : 0.0},
+                                    {"first_mm", beams.sector ? 0.0 : beams.first},
+                                    {"length_mm", beams.sector ? 0.0 : width},
+                                    {"range_dB", kImageRange_dB},
+                                    {"origin_mm", json_of(beams.origin_mm)},
+                                    {"right", json_of(beams.across)},
+                                    {"up", json_of(beams.ahead)},
+                                    {"probe", probe_json(place, force_N)},
+                                    {"took_ms", 1e-6 * static_cast<double>(thread_cpu_ns() - before)}});
   return std::shared_ptr<const LiveImage>(std::move(image));
 }
 
@@ -304,15 +304,14 @@ Result<std::shared_ptr<const LiveImage>> ImageMaker::Parts::xray() {
   image->rows = static_cast<std::uint32_t>(picture.rows);
   image->columns = static_cast<std::uint32_t>(picture.columns);
   image->pixels = picture.pixels;
-  image->text = ImageJson{{"modality", "xray"},
-                          {"time_s", moment.time_s},
-                          {"angle_deg", tables.fluoroscopy.angle_deg},
-                          {"cranial_deg", tables.fluoroscopy.cranial_deg},
-                          {"energy_keV", tables.fluoroscopy.energy_keV},
-                          {"mm_per_pixel", picture.mm_per_pixel},
-                          {"probe", std::move(probe)},
-                          {"took_ms", 1e-6 * static_cast<double>(thread_cpu_ns() - before)}}
-                    .dump();
+  image->text = json_text(ImageJson{{"modality", "xray"},
+                                    {"time_s", moment.time_s},
+                                    {"angle_deg", tables.fluoroscopy.angle_deg},
+                                    {"cranial_deg", tables.fluoroscopy.cranial_deg},
+                                    {"energy_keV", tables.fluoroscopy.energy_keV},
+                                    {"mm_per_pixel", picture.mm_per_pixel},
+                                    {"probe", std::move(probe)},
+                                    {"took_ms", 1e-6 * static_cast<double>(thread_cpu_ns() - before)}});
   return std::shared_ptr<const LiveImage>(std::move(image));
 }
 

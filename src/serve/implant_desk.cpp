@@ -219,8 +219,12 @@ ImplantDesk::Changes ImplantDesk::take_changes() {
     grid_ = std::move(news.grid);
     grid_changed_ = true;
   }
+  if (news.problem) {
+    state_.is_computing = false;
+    state_changed_ = true;
+  }
   return {std::exchange(plan_changed_, false), std::exchange(state_changed_, false),
-          std::exchange(grid_changed_, false) ? grid_ : nullptr};
+          std::exchange(grid_changed_, false) ? grid_ : nullptr, std::move(news.problem)};
 }
 
 }  // namespace stylet::serve

@@ -74,6 +74,7 @@ class ImplantDesk {
     bool plan = false;
     bool state = false;
     std::shared_ptr<const LiveDose> dose;  ///< null: the dose has not changed
+    std::optional<Error> problem;          ///< the dose cannot be computed
   };
   /// Takes over what the workers have done.
   [[nodiscard]] Changes take_changes();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "implant_dose.hpp"
 
+#include "stylet/core/survive.hpp"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -60,12 +62,13 @@ class ImplantDose::Field {
 
   /// Brings the dose to that of these seeds: takes away those that have gone, and adds the new ones.
   void bring_to(const RateTable& table, const std::vector<PlacedSource>& seeds) {
+    const std::vector<PlacedSource> before = std::exchange(added_, {});  // stays empty if an exception ends this
     std::size_t kept = 0;
-    while (kept < std::min(seeds.size(), added_.size()) && is_same(seeds[kept], added_[kept])) ++kept;
+    while (kept < std::min(seeds.size(), before.size()) && is_same(seeds[kept], before[kept])) ++kept;
     if (kept == 0) {
       std::fill(dose_.begin(), dose_.end(), 0.0);
     } else {
-      for (std::size_t k = kept; k < added_.size(); ++k) add(table, added_[k], -1.0);
+      for (std::size_t k = kept; k < before.size(); ++k) add(table, before[k], -1.0);
     }
     for (std::size_t k = kept; k < seeds.size(); ++k) add(table, seeds[k], 1.0);
     added_ = seeds;
@@ -215,7 +218,9 @@ void ImplantDose::compute(const Wanted& wanted) {
   news_.grid = std::move(grid);
 }
 
-void ImplantDose::run(const std::stop_token& stop) {
+/// Chooses the structures, their samples and the grid.
+void ImplantDose::prepare() {
+  structures_.clear();
   const DoseOptions& options = implant_->options;
   const double factor = weighted_sources(implant_->plan, implant_->source, options).factor;
   const std::vector<SwollenTime> times =
@@ -250,17 +255,31 @@ void ImplantDose::run(const std::stop_token& stop) {
   }
   grid_ = std::make_unique<Field>(points, options.swelling, times, factor);
   compute_planned();
+}
+
+void ImplantDose::fail(const Error& why) {
+  const std::scoped_lock lock(mutex_);
+  news_.problem = why;
+}
+
+void ImplantDose::run(const std::stop_token& stop) {
+  const auto fails = [this](const Error& why) { fail(why); };
+  bool is_prepared = survive(
+      "the dose of the plan", [this] { prepare(); }, fails);
   std::uint64_t done = 0;
-  while (!stop.stop_requested()) {
+  const auto compute_next = [&] {
     Wanted wanted;
     {
       std::unique_lock lock(mutex_);
       if (!woken_.wait(lock, stop, [&] { return wanted_.version != done; })) return;
+      done = wanted_.version;
       wanted = wanted_;
     }
-    done = wanted.version;
+    if (!is_prepared) prepare();
+    is_prepared = true;
     compute(wanted);
-  }
+  };
+  while (!stop.stop_requested()) survive("the dose of the seeds", compute_next, fails);
 }
 
 }  // namespace stylet::serve

@@ -15,6 +15,16 @@
 
 namespace stylet::serve {
 
+/// Results of ImplantDose.
+struct ImplantNews {
+  std::optional<ImplantScore> planned;
+  std::optional<ImplantScore> now;
+  std::uint64_t version = 0;  ///< `now` is of the seeds with this number (set())
+  std::shared_ptr<const LiveDose> grid;
+  std::optional<Error> problem;  ///< the dose of the last seeds cannot be computed
+  [[nodiscard]] bool is_any() const { return planned || now || grid; }
+};
+
 /// The dose of the seeds that have been dropped so far, computed anew in a thread of its own whenever they change:
 /// first D90 and V100 of the target, then the goals and the grid. The dose of each sample is kept, so that a further
 /// seed costs no more than the first.
@@ -34,14 +44,8 @@ class ImplantDose {
   /// Sets the seeds, with their strength [U] as weight. Returns at once. @return number of these seeds, for News
   std::uint64_t set(std::vector<PlacedSource> seeds);
 
-  /// Results that have been computed since the last call.
-  struct News {
-    std::optional<ImplantScore> planned;
-    std::optional<ImplantScore> now;
-    std::uint64_t version = 0;  ///< `now` is of the seeds with this number (set())
-    std::shared_ptr<const LiveDose> grid;
-    [[nodiscard]] bool is_any() const { return planned || now || grid; }
-  };
+  using News = ImplantNews;
+  /// What has been computed since the last call.
   [[nodiscard]] News news();
 
  private:
@@ -56,6 +60,8 @@ class ImplantDose {
 
   ImplantDose(std::shared_ptr<const ImplantCase> implant, Tg43 tg43);
   void run(const std::stop_token& stop);
+  void prepare();
+  void fail(const Error& why);
   void compute_planned();
   void compute(const Wanted& wanted);
   [[nodiscard]] bool is_newest(const Wanted& wanted);

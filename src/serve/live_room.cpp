@@ -232,6 +232,7 @@ Reply LiveRoom::follow_implant() {
   if (changes.plan) reply.show.emplace_back(implant_->shown_plan());
   if (changes.state) reply.show.emplace_back(implant_->state());
   if (changes.dose) reply.show.emplace_back(std::move(changes.dose));
+  if (changes.problem) reply.show.emplace_back(Refusal{0, notice_of(*changes.problem)});
   if (!run_) return reply;
   if (auto places = run_->seeds().news()) reply.show.emplace_back(LiveSeeds{std::move(*places)});
   return reply;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "map_maker.hpp"
 
+#include "stylet/core/survive.hpp"
+
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <new>
 #include <utility>
 
 namespace stylet::serve {
@@ -23,7 +24,13 @@ MapMaker::MapMaker(const std::shared_ptr<const Model>& model, PlanOfHole plan_of
     : plan_of_(std::move(plan_of)), needles_(*model), thread_([this, model = model]() mutable {
         (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()),
                           kNiceOfMaps);  // the threads that it starts inherit it
-        make(model);
+        survive(
+            "the map of the holes", [&] { make(model); },
+            [this](const Error& why) {
+              const std::scoped_lock lock(mutex_);
+              state_.why_not = why.what;
+              changed_ = true;
+            });
         model.reset();  // frees its compliance, which the map does not need
         while (const auto hole = next_hole()) predict(*hole);
         done_.store(true, std::memory_order_release);
@@ -85,22 +92,24 @@ std::optional<std::size_t> MapMaker::next_hole() {
 }
 
 void MapMaker::predict(std::size_t hole) {
-  const auto plan = [this, hole] {
-    const std::scoped_lock lock(mutex_);
-    return plan_of_(state_.map->holes[hole].hole);
-  }();
   const Progress progress = [this](std::string_view /*stage*/, double /*fraction*/) {
     if (given_up_ || !wanted_) throw Unwanted();
   };
   std::optional<Result<Prediction>> predicted;
-  try {
-    predicted = predict_hole(needles_.scenario, needles_.mesh, plan, targets_, progress, needles_.own);
-  } catch (const Unwanted&) {
-    return;
-  } catch (const std::bad_alloc&) {
-    predicted = failure("hole " + plan.hole.value_or(""), "there is too little memory to simulate the insertion",
-                        "Close other programs, or use a coarser mesh (mesh.nodes)");
-  }
+  survive(
+      "the insertion through a hole",
+      [&] {
+        const std::string name = [this, hole] {
+          const std::scoped_lock lock(mutex_);
+          return state_.map->holes[hole].hole;
+        }();
+        try {
+          predicted = predict_hole(needles_.scenario, needles_.mesh, plan_of_(name), targets_, progress, needles_.own);
+        } catch (const Unwanted&) {  // it will be simulated from its start next time
+        }
+      },
+      [&](const Error& why) { predicted = why; });
+  if (!predicted) return;
   const std::scoped_lock lock(mutex_);
   HoleRow& row = state_.map->holes[hole];
   if (*predicted) {

@@ -3,6 +3,7 @@
 
 #include "wire.hpp"
 
+#include "stylet/core/printable.hpp"
 #include "stylet/core/result.hpp"
 
 #include <memory>
@@ -12,9 +13,9 @@
 
 namespace stylet::serve {
 
-/// A notice to the viewer whose request was not carried out.
+/// A notice to the viewer whose request was not carried out, or to all viewers about work that failed.
 struct Refusal {
-  std::uint64_t viewer = 0;
+  std::uint64_t viewer = 0;  ///< 0: all
   Notice why;
 };
 
@@ -32,7 +33,10 @@ class Audience {
 };
 
 /// An error in the words of a notice.
-inline Notice notice_of(const Error& error) { return {error.where + ": " + error.what, error.cure}; }
+inline Notice notice_of(const Error& error) {
+  return {printable_clause(error.where, kLongestPlace) + ": " + printable_clause(error.what),
+          printable_clause(error.cure)};
+}
 
 /// A message as bytes. Several connections share them; each puts its own number in.
 struct Parcel {

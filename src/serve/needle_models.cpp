@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "needle_models.hpp"
 
+#include "stylet/core/survive.hpp"
+
 #include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -96,22 +98,29 @@ void NeedleModels::forget_others() {
   }
 }
 
-void NeedleModels::compile(std::size_t needle) {
+/// The compiled needle; empty: it cannot be compiled, or is not needed any more.
+std::optional<NeedleModels::Ready> NeedleModels::compiled(std::size_t needle) {
   const Progress progress = [this](std::string_view /*stage*/, double /*fraction*/) {
     if (given_up_) throw NotNeeded();
   };
   std::optional<Ready> made;
   try {
     const auto model = needles_.compile(plans_[needle], names_[needle], progress);
-    if (model) {
-      made = Ready{*model, nullptr};
-      if (auto field = DisplayField::prepare(*model, {}, progress)) made->field = std::move(*field);
-    }
+    if (!model) return made;
+    made = Ready{*model, nullptr};
+    if (auto field = DisplayField::prepare(*model, {}, progress)) made->field = std::move(*field);
   } catch (const NotNeeded&) {
-    return;
-  } catch (const std::bad_alloc&) {
-    if (made) made->field.reset();
+    made.reset();
+  } catch (const std::bad_alloc&) {  // the model is there, and its pictures do without
   }
+  return made;
+}
+
+void NeedleModels::compile(std::size_t needle) {
+  std::optional<Ready> made;
+  survive(
+      "the model of another needle", [&] { made = compiled(needle); }, [](const Error&) {});
+  if (given_up_) return;
   const std::scoped_lock lock(mutex_);
   changed_ = true;
   if (!made) {

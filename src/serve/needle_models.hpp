@@ -54,6 +54,7 @@ class NeedleModels {
   [[nodiscard]] std::optional<std::size_t> next();
   void compile(std::size_t needle);
   void forget_others();
+  [[nodiscard]] std::optional<Ready> compiled(std::size_t needle);
 
   OtherNeedles needles_;
   std::vector<InsertionPlan> plans_;

@@ -13,7 +13,7 @@ namespace {
 
 // SessionStatus::stage while the session is ready and a part of the picture is missing.
 constexpr const char* kFieldStage = "the picture of the tissue's motion";
-constexpr const char* kNoField = "there is too little memory to show how the tissue moves";
+constexpr const char* kNoField = "how the tissue moves cannot be shown: ";
 
 /// The insertion through a hole: the case's own if it plans one, otherwise a copy of its first insertion through this
 /// hole, to the far end of the target.
@@ -222,6 +222,7 @@ bool OpenCase::take_field() {
   leaving_.forget_ended();
   if (!field_maker_ || !field_maker_->done()) return false;
   open_.field = field_maker_->field();
+  no_field_ = field_maker_->problem();
   field_maker_.reset();
   keep_needle();
   return true;
@@ -250,7 +251,7 @@ ImageSubject OpenCase::patient() const {
 
 void OpenCase::describe(SessionStatus& status) const {
   if (!is_open()) return;
-  status.stage = field_maker_ ? kFieldStage : open_.field ? "" : kNoField;
+  status.stage = field_maker_ ? kFieldStage : open_.field ? "" : kNoField + no_field_;
   status.fraction = field_maker_ ? field_maker_->fraction() : -1.0;
 }
 

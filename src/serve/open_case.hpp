@@ -59,6 +59,7 @@ class OpenCase {
   std::size_t insertion_ = 0;                ///< of the open model
   std::shared_ptr<ImplantDesk> implant_;     ///< null: the case has no plan of seeds
   std::shared_ptr<FieldMaker> field_maker_;  ///< until the field of the open model is complete
+  std::string no_field_;                     ///< why the open model has none
   std::shared_ptr<MapMaker> map_maker_;
   LiveMap map_;                  ///< the latest one
   bool map_is_shown_ = false;    ///< the viewers have it

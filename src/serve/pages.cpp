@@ -4,10 +4,12 @@
 #include "assets.hpp"
 #include "attachment.hpp"
 
+#include "io/record/json.hpp"
+#include "stylet/core/printable.hpp"
 #include "stylet/io/run_recorder.hpp"
 #include "stylet/sim/recorded_steps.hpp"
 
-#include <nlohmann/json.hpp>
+#include <algorithm>
 
 namespace stylet::serve {
 
@@ -51,14 +53,14 @@ Access::Verdict Pages::verdict(const HttpRequest& request) const {
 }
 
 HttpResponse Pages::refusal(const HttpRequest& request, http::status status, const std::string& why) {
-  return response(request, status, "text/plain; charset=utf-8", why + "\n");
+  return response(request, status, "text/plain; charset=utf-8", printable_lines(why) + "\n");
 }
 
 /// The list holds names only, because opening each recording would take seconds.
 HttpResponse Pages::recordings(const HttpRequest& request) const {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  record::Json list = record::Json::array();
   for (const std::string& name : shelf_.names()) list.push_back({{"name", name}});
-  return response(request, http::status::ok, "application/json", list.dump());
+  return response(request, http::status::ok, "application/json", record::compact(list));
 }
 
 /// The force curve of a recording. @param path NAME/forces.csv

@@ -2,10 +2,12 @@
 #include "stylet/serve/server.hpp"
 
 #include "access.hpp"
+#include "complaints.hpp"
 #include "door.hpp"
 #include "hall.hpp"
 #include "kept_token.hpp"
 #include "pages.hpp"
+#include "stylet/core/survive.hpp"
 
 #include <fmt/format.h>
 #include <boost/asio/io_context.hpp>
@@ -42,6 +44,7 @@ constexpr int kNiceReading = 10;  // lower priority than the loop and its record
 struct Server::Parts {
   Parts(ServerSettings settings_, Access access_)
       : settings(std::move(settings_)),
+        complaints(settings.session.say),
         access(std::move(access_)),
         acceptor(io),
         retry(io),
@@ -50,6 +53,7 @@ struct Server::Parts {
         hall(io, settings.session, settings.hand_silence_s) {}
 
   ServerSettings settings;
+  Complaints complaints;
   Access access;
   asio::io_context io{1};
   tcp::acceptor acceptor;
@@ -73,9 +77,14 @@ struct Server::Parts {
     acceptor.async_accept([this](beast::error_code error, tcp::socket socket) {
       if (error == asio::error::operation_aborted) return;
       if (error) return accept_later();
-      beast::error_code ignored;
-      socket.set_option(tcp::no_delay(true), ignored);
-      let_in(std::move(socket));
+      survive(
+          "a new connection",
+          [&] {
+            beast::error_code ignored;
+            socket.set_option(tcp::no_delay(true), ignored);
+            let_in(std::move(socket));
+          },
+          [this](const Error& why) { complaints.tell(why); });
       accept();
     });
   }
@@ -87,6 +96,14 @@ struct Server::Parts {
     if (is_refused) pass = refused_door.enter(address);
     if (pass)
       read_request(std::make_shared<Caller>(Caller{beast::tcp_stream(std::move(socket)), std::move(pass), is_refused}));
+  }
+  /// Does the work of `io` until it is stopped. An exception of a piece of work that does not survive by itself ends
+  /// that piece, and at most the connection that it belongs to.
+  void run() {
+    const auto tell = [this](const Error& why) { complaints.tell(why); };
+    while (!io.stopped())
+      survive(
+          "the connections", [this] { io.run(); }, tell);
   }
   /// Accepts again after a pause. Used after an error that would recur at once, such as too many open files.
   void accept_later() {
@@ -124,7 +141,15 @@ struct Server::Parts {
     // Reading a recording takes a while, so another thread does it; here all viewers would have to wait.
     caller->stream.expires_never();
     asio::post(readers, [this, caller, request] {
-      asio::post(io, [this, caller, response = pages.answer(request)] { write(caller, response); });
+      const auto respond = [&](HttpResponse response) {
+        asio::post(io, [this, caller, made = std::move(response)] { write(caller, made); });
+      };
+      survive(
+          "a request to the server", [&] { respond(pages.answer(request)); },
+          [&](const Error& why) {
+            complaints.tell(why);
+            respond(Pages::refusal(request, http::status::internal_server_error, why.message() + '.'));
+          });
     });
   }
   void refuse(const std::shared_ptr<Caller>& caller, const HttpRequest& request, const std::string& why) {
@@ -223,7 +248,7 @@ void Server::start() {
   p.accept();
   p.hall.start();
   asio::post(p.readers, [] { (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceReading); });
-  p.thread = std::thread([&p] { p.io.run(); });
+  p.thread = std::thread([&p] { p.run(); });
   p.hall.session().start();
 }
 

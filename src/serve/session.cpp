@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session.hpp"
 
+#include "stylet/core/survive.hpp"
+
 #include <algorithm>
 
 namespace stylet::serve {
 
 namespace {
-
-using SessionClock = std::chrono::steady_clock;
 
 constexpr auto kStatusEvery = std::chrono::milliseconds(500);
 constexpr auto kProgressEvery = std::chrono::milliseconds(50);
@@ -18,6 +18,7 @@ constexpr auto kImplantEvery = std::chrono::milliseconds(3);
 Session::Session(SessionSettings settings, Audience& audience)
     : settings_(std::move(settings)),
       audience_(audience),
+      complaints_(settings_.say),
       case_(settings_),
       live_(settings_),
       replay_(settings_),
@@ -199,6 +200,20 @@ void Session::tick(double dt_s) {
   if (SessionClock::now() >= next_status_) say_status();
 }
 
+/// An exception ended a request. Whatever has the audience continues.
+void Session::give_up(const Request& request, const Error& why) {
+  complaints_.tell(why);
+  const Notice notice = notice_of(why);
+  if (live_.is_live() || is_replaying_) {
+    refuse(request, notice);
+    status_.state = SessionStatus::State::ready;
+    live_.go_on();
+  } else {
+    fail(notice);
+  }
+  say_status();
+}
+
 /// Opens the first case, or shows the recording to start with.
 void Session::begin() {
   const Request nobody{};
@@ -210,29 +225,48 @@ void Session::begin() {
   say_status();
 }
 
-void Session::run(const std::stop_token& stop) {
-  begin();
+/// An exception ended work that nobody has asked for. It may come back in the next turn, and is told once in a while.
+void Session::tell_all(const Error& why) {
+  if (complaints_.tell(why)) audience_.show(Refusal{0, notice_of(why)});
+}
+
+/// Carries out the requests that wait, and shows the next picture when it is due.
+/// @param before when the last one was due
+void Session::turn(const std::stop_token& stop, SessionClock::time_point& before) {
+  const auto fails = [this](const Error& why) { tell_all(why); };
   const auto period =
       std::chrono::duration_cast<SessionClock::duration>(std::chrono::duration<double>(1.0 / settings_.pictures_per_s));
-  auto before = SessionClock::now();
-  while (!stop.stop_requested()) {
-    const auto next =
-        live_.is_busy() ? std::min(before + period, SessionClock::now() + kImplantEvery) : before + period;
-    const auto waiting = mail_.take(stop, next);
-    const auto begun = SessionClock::now();
-    for (const Request& request : waiting) {
-      if (!stop.stop_requested()) carry_out(request);
-    }
-    const auto now = SessionClock::now();
-    before += now - begun;  // a replay does not advance while requests are carried out
-    if (now < before + period) {
-      if (live_.is_busy()) show(live_.follow_implant());
-      continue;
-    }
-    tick(std::chrono::duration<double>(now - before).count());
-    before = now;
+  const auto next = live_.is_busy() ? std::min(before + period, SessionClock::now() + kImplantEvery) : before + period;
+  const auto waiting = mail_.take(stop, next);
+  const auto begun = SessionClock::now();
+  for (const Request& request : waiting) {
+    if (stop.stop_requested()) return;
+    survive(
+        "a request of a page", [&] { carry_out(request); }, [&](const Error& why) { give_up(request, why); });
   }
-  live_.end();
+  const auto now = SessionClock::now();
+  before += now - begun;  // a replay does not advance while requests are carried out
+  if (now < before + period) {
+    if (live_.is_busy())
+      survive(
+          "the seeds", [&] { show(live_.follow_implant()); }, fails);
+    return;
+  }
+  const double dt_s = std::chrono::duration<double>(now - before).count();
+  before = now;
+  survive(
+      "the picture of the needle", [&] { tick(dt_s); }, fails);
+}
+
+void Session::run(const std::stop_token& stop) {
+  survive(
+      "the start of the session", [&] { begin(); }, [&](const Error& why) { give_up({}, why); });
+  auto before = SessionClock::now();
+  while (!stop.stop_requested())
+    survive(
+        "the session", [&] { turn(stop, before); }, [this](const Error& why) { tell_all(why); });
+  survive(
+      "the end of the session", [&] { live_.end(); }, [this](const Error& why) { complaints_.tell(why); });
 }
 
 }  // namespace stylet::serve

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "complaints.hpp"
 #include "live_room.hpp"
 #include "mailbox.hpp"
 #include "open_case.hpp"
@@ -34,7 +35,10 @@ class Session {
   void let_go();
 
  private:
+  using SessionClock = std::chrono::steady_clock;
+
   void run(const std::stop_token& stop);
+  void turn(const std::stop_token& stop, SessionClock::time_point& before);
   void begin();
   void carry_out(const Request& request);
   Reply ask_room(const CommandRow& row, const Request& request);
@@ -50,9 +54,12 @@ class Session {
   Progress progress();
   void refuse(const Request& request, const Notice& why) { audience_.show(Refusal{request.viewer, why}); }
   void fail(const Notice& why);
+  void give_up(const Request& request, const Error& why);
+  void tell_all(const Error& why);
 
   const SessionSettings settings_;
   Audience& audience_;
+  Complaints complaints_;
   OpenCase case_;
   LiveRoom live_;
   ReplayRoom replay_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "viewer.hpp"
 
+#include "messages.hpp"
+#include "stylet/core/survive.hpp"
 #include "wall_clock.hpp"
 
 #include <boost/asio/buffer.hpp>
@@ -66,7 +68,12 @@ void Viewer::read() {
   socket_.async_read(incoming_, [self = shared_from_this()](beast::error_code error, std::size_t /*bytes*/) {
     if (error) return self->end();
     const auto data = self->incoming_.cdata();
-    self->hear({static_cast<const std::byte*>(data.data()), data.size()});
+    survive(
+        "a message of a page",
+        [&] {
+          self->hear({static_cast<const std::byte*>(data.data()), data.size()});
+        },
+        [&](const Error& why) { self->send(parcel_of(notice_of(why))); });
     self->incoming_.consume(self->incoming_.size());
     if (self->dropped_ > kMostDropped) return self->close();
     if (!self->ended_) self->read();

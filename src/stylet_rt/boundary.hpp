@@ -4,7 +4,6 @@
 #include "stylet/core/result.hpp"
 #include "stylet/stylet_rt.h"
 
-#include <exception>
 #include <new>
 #include <string_view>
 
@@ -39,11 +38,8 @@ stylet_rt_status guarded(ErrorText& error, const Body& body) noexcept {
   } catch (const std::bad_alloc&) {
     error.say("out of memory");
     return STYLET_RT_OUT_OF_MEMORY;
-  } catch (const std::exception& e) {
-    error.say(e.what());
-    return STYLET_RT_FAILED;
   } catch (...) {
-    error.say("an unknown error occurred");
+    error.say("an unexpected fault ended the call");
     return STYLET_RT_FAILED;
   }
 }

@@ -2,6 +2,8 @@
 // The link as a server.
 #include "peer.hpp"
 
+#include "support/thrower.hpp"
+
 using namespace stylet;
 using namespace stylet::igtl;
 using namespace stylet::test;
@@ -322,4 +324,22 @@ TEST(Link, surfaces_that_are_none_are_refused) {
   large.points.resize(6'000'000);
   EXPECT_FALSE(link->publish_surface(std::move(large)));
   EXPECT_TRUE(link->publish_surface({}).ok()) << "an empty one shows that there is none any more";
+}
+
+TEST(Link, an_exception_ends_one_message_and_the_link_goes_on) {
+  for (const char* place :
+       {"OpenIGTLink", "sending by OpenIGTLink", "a new OpenIGTLink connection", "an OpenIGTLink message"}) {
+    SCOPED_TRACE(place);
+    const Thrower thrower(place);
+    const auto link = opened(any_port());
+    const Repeat publisher([&] { link->publish(picture(1.25)); });
+    {
+      Peer first = Peer::to(link->state().port);
+      first.send(Raw(58, 0));  // a header of nothing
+      (void)comes_true([] { return Thrower::has_thrown(); });
+    }
+    EXPECT_TRUE(Thrower::has_thrown());
+    Peer second = Peer::to(link->state().port);
+    EXPECT_TRUE(second.next("TRANSFORM", "NeedleTipToReference"));
+  }
 }

@@ -4,6 +4,7 @@
 #include "report/page_template.hpp"
 #include "report/text.hpp"
 #include "reproduction_data.hpp"
+#include "stylet/core/json_text.hpp"
 #include "stylet/evidence/reproduce/paper_numbers.hpp"
 
 #include <fmt/format.h>
@@ -190,7 +191,7 @@ std::string page_data(const Reproduction& r) {
   Json runs = reproduction_data(r)["fig6"]["runs"];
   for (std::size_t i = 0; i < runs.size(); ++i) runs[i]["curves"] = curves_json(r.figure6.runs[i]);
   const Json data{{"fig2", figure2_json(r.figure2)}, {"fig5", reproduction_data(r)["fig5"]}, {"runs", runs}};
-  return data.dump();
+  return json_text(data);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "reproduction_data.hpp"
 
 #include "io/results/report/text.hpp"
+#include "stylet/core/json_text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -206,7 +207,7 @@ Json reproduction_data(const Reproduction& r) {
 }
 
 std::string reproduction_json(const Reproduction& reproduction) {
-  return reproduction_data(reproduction).dump(1) + "\n";
+  return json_text(reproduction_data(reproduction), 1) + "\n";
 }
 
 }  // namespace stylet::reproduce

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/results/output_folder.hpp"
 #include "reproduction_data.hpp"
+#include "stylet/core/json_text.hpp"
 
 #include <fmt/format.h>
 
@@ -73,7 +74,7 @@ Result<> write_reproduction(const Reproduction& reproduction, const fs::path& fo
   Result<std::string> page = reproduction_page(reproduction);
   if (!page) return page.error();
   std::vector<File> files{{"report.html", std::move(*page)},
-                          {"figure2.json", figure2_json(reproduction.figure2).dump(1)},
+                          {"figure2.json", json_text(figure2_json(reproduction.figure2), 1)},
                           {"figure5.csv", figure5_csv(reproduction.figure5)},
                           {"table.csv", table_csv(reproduction.table)}};
   for (const Figure6Run& run : reproduction.figure6.runs) files.push_back({curve_file(run), figure6_csv(run)});

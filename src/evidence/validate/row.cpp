@@ -2,6 +2,7 @@
 #include "stylet/evidence/validate/row.hpp"
 
 #include "need.hpp"
+#include "stylet/core/survive.hpp"
 
 #include <fmt/format.h>
 
@@ -106,8 +107,8 @@ Row measure(const RowSpec& spec, Context& context) {
     row.finding = Finding::skip(skipped.why);
   } catch (const Failed& failed) {
     crash(failed.error.message());
-  } catch (const std::exception& unexpected) {  // a failure of one row must not stop the others
-    crash(fmt::format("unexpected failure: {}", unexpected.what()));
+  } catch (const std::exception&) {  // a failure of one row must not stop the others
+    crash(caught_exception("").message());
   }
   row.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   return row;

@@ -3,6 +3,7 @@
 
 #include "fem/blas_threads.hpp"
 #include "sim/needle_choice.hpp"
+#include "stylet/core/parallel.hpp"
 #include "stylet/evidence/validate/context.hpp"
 #include "stylet/mesher/mesher.hpp"
 #include "stylet/phantom/phantom.hpp"
@@ -186,37 +187,23 @@ class Study {
     add_job(key, other, out_.influences.size() - 1, &Influence::at_low);
   }
 
-  /// Carries all runs out, one per core at a time.
+  /// Carries all runs out, several at a time.
   void carry_out() {
     std::mutex mutex;
-    std::size_t next = 0;
-    std::size_t done = 0;
-    const auto work = [&] {
-      for (;;) {
-        std::size_t mine = 0;
-        {
-          const std::lock_guard lock(mutex);
-          if (next == jobs_.size()) return;
-          mine = next++;
-        }
-        const Job& job = jobs_[mine];
-        const auto summary = summary_of(job.scenario);
-        const std::lock_guard lock(mutex);
-        Influence& influence = out_.influences[job.influence];
-        if (summary) {
-          influence.*job.outputs = outputs_of(*summary);
-        } else {
-          constexpr double none = std::numeric_limits<double>::quiet_NaN();
-          influence.*job.outputs = {none, none, none};
-          influence.note = summary.error().message();
-        }
-        report(progress_, "sensitivity", static_cast<double>(++done) / static_cast<double>(jobs_.size()));
+    const auto work = [&](std::size_t mine) {
+      const Job& job = jobs_[mine];
+      const auto summary = summary_of(job.scenario);
+      const std::lock_guard lock(mutex);
+      Influence& influence = out_.influences[job.influence];
+      if (summary) {
+        influence.*job.outputs = outputs_of(*summary);
+      } else {
+        constexpr double none = std::numeric_limits<double>::quiet_NaN();
+        influence.*job.outputs = {none, none, none};
+        influence.note = summary.error().message();
       }
     };
-    std::vector<std::thread> threads;
-    for (int t = 1; t < out_.threads; ++t) threads.emplace_back(work);
-    work();
-    for (std::thread& thread : threads) thread.join();
+    for_each_in_parallel(jobs_.size(), work, progress_, "sensitivity");
   }
 
   /// A run of the study: its scenario and the place of its outputs.

@@ -2,6 +2,7 @@
 #include "validation_data.hpp"
 
 #include "evidence/reproduce/page_text.hpp"
+#include "stylet/core/json_text.hpp"
 #include "stylet/measure/timing.hpp"
 
 #include <fmt/format.h>
@@ -164,6 +165,6 @@ Json page_data(const Validation& v) {
   return {{"plots", plots}, {"sensitivity", v.sensitivity ? sensitivity_json(*v.sensitivity) : Json(nullptr)}};
 }
 
-std::string validation_json(const Validation& validation) { return validation_data(validation).dump(1) + "\n"; }
+std::string validation_json(const Validation& validation) { return json_text(validation_data(validation), 1) + "\n"; }
 
 }  // namespace stylet::validate

@@ -3,6 +3,7 @@
 #include "report/page_template.hpp"
 #include "report/text.hpp"
 #include "sensitivity_page.hpp"
+#include "stylet/core/json_text.hpp"
 #include "stylet/measure/timing.hpp"
 #include "validation_data.hpp"
 
@@ -156,7 +157,7 @@ Result<std::string> validation_page(const Validation& v) {
        "<noscript><p class=\"page note\">The pictures need JavaScript. The same numbers are in the files beside "
        "this page.</p></noscript>\n"},
       {"data_id", "validation-data"},
-      {"data", results::json_script_safe(page_data(v).dump())},
+      {"data", results::json_script_safe(json_text(page_data(v)))},
   };
   return results::whole_page(results::validate_assets(), slots, "validate.html");
 }

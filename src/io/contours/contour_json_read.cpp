@@ -3,6 +3,7 @@
 #include "detail/json_text.hpp"
 #include "detail/parsers.hpp"
 #include "detail/text.hpp"
+#include "stylet/core/json_text.hpp"
 #include "stylet/core/nearest_name.hpp"
 #include "stylet/geom/structure_names.hpp"
 
@@ -64,8 +65,9 @@ Result<Contour> parse_contour(const Json& json, const std::string& where) {
     Vec3 value;
     for (int axis = 0; axis < 3; ++axis) {
       if (!point[axis].is_number() || !std::isfinite(point[axis].get<double>())) {
-        return input_error(here, fmt::format("the coordinate {} is not a finite number", point[axis].dump()),
-                           "Write [x, y, z] in mm");
+        return input_error(
+            here, fmt::format("the coordinate {} is not a finite number", shortened(json_text(point[axis]), 60)),
+            "Write [x, y, z] in mm");
       }
       value[axis] = point[axis].get<double>();
     }
@@ -81,7 +83,8 @@ Result<> parse_colour(const Json& json, const std::string& where, std::array<int
   const bool three = json.is_array() && json.size() == 3;
   for (std::size_t i = 0; i < 3; ++i) {
     if (!three || !json[i].is_number_integer() || json[i].get<long>() < 0 || json[i].get<long>() > 255) {
-      return input_error(where, fmt::format("the colour {} is not three whole numbers 0…255", json.dump()),
+      return input_error(where,
+                         fmt::format("the colour {} is not three whole numbers 0…255", shortened(json_text(json), 60)),
                          "Write \"colour\": [red, green, blue]");
     }
     colour[i] = json[i].get<int>();
@@ -154,7 +157,7 @@ Result<> check_header(const Json& json, const std::string& source) {
   if (!json.contains("version") || json["version"] != 1) {
     return input_error(source,
                        fmt::format("format version {} is unknown, 1 is expected",
-                                   json.contains("version") ? json["version"].dump() : "(none)"),
+                                   json.contains("version") ? shortened(json_text(json["version"]), 60) : "(none)"),
                        "Write \"version\": 1, or use the Stylet that wrote the file");
   }
   Result<std::string> units = string_at(json, "units", source);

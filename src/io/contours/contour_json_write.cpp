@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writer of contour JSON (docs/formats.md).
 #include "detail/whole_file.hpp"
+#include "stylet/core/json_text.hpp"
 #include "stylet/io/contours_io.hpp"
 
 #include <fmt/format.h>
@@ -14,7 +15,7 @@ Result<> write_contour_json(const ContourSet& contours, const std::filesystem::p
   using Json = nlohmann::ordered_json;
   // One contour per line, which is compact, readable in an editor, and gives short differences in version control.
   std::string text = "{\n";
-  const auto quoted = [](const std::string& s) { return Json(s).dump(-1, ' ', false, Json::error_handler_t::replace); };
+  const auto quoted = [](const std::string& s) { return json_text(Json(s)); };
   text += "  \"format\": \"stylet-contours\",\n  \"version\": 1,\n  \"units\": \"mm\",\n  \"frame\": \"LPS\",\n";
   text += fmt::format("  \"label\": {},\n  \"frame_of_reference\": {},\n  \"structures\": [", quoted(contours.label),
                       quoted(contours.frame_of_reference));

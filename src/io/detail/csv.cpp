@@ -51,9 +51,8 @@ Result<CsvLines> parse_csv_lines(const std::filesystem::path& path) {
     }
     try {
       read.lines.push_back({number, fields_of(line)});
-    } catch (const std::exception& error) {
-      return input_error(where, fmt::format("the line is not comma-separated values ({})", error.what()),
-                         "Check quotes and backslashes in this line");
+    } catch (const std::exception&) {
+      return input_error(where, "the line is not comma-separated values", "Check quotes and backslashes in this line");
     }
   }
   if (stream.bad()) return input_error(path.string(), "the file cannot be read to its end", "Copy it again");

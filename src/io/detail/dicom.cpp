@@ -105,7 +105,7 @@ Result<> load_dicom(DcmFileFormat& file, const fs::path& path, const std::functi
   if (status.bad() && !has_header && !has_dicom_mark(path))
     return input_error(path.string(), "this is not a DICOM file", name_another);
   if (status.bad()) {
-    return input_error(path.string(), fmt::format("the DICOM file cannot be read to its end ({})", status.text()),
+    return input_error(path.string(), "the DICOM file cannot be read to its end",
                        "The file is truncated or damaged; copy or export it again");
   }
   return Ok{};

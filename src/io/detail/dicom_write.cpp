@@ -75,15 +75,13 @@ void fill_common(Filler& fill, DcmDataset& data, const char* sop_class, const ch
 
 Result<> save_dicom(DcmFileFormat& file, const Filler& fill, const std::filesystem::path& path, E_TransferSyntax syntax,
                     const char* name) {
-  const auto refused = [&](const OFCondition& why) {
-    return failure(path.string(), fmt::format("the {} cannot be written ({})", name, why.text()),
-                   "Check the folder's permissions and space");
-  };
-  if (fill.status().bad()) return refused(fill.status());
+  if (fill.status().bad())
+    return failure(path.string(), fmt::format("a value of the {} does not fit into a DICOM file", name),
+                   "Shorten the names in its input");
   return write_whole(path, [&](const std::filesystem::path& temporary) -> Result<> {
-    const OFCondition saved = file.saveFile(temporary.c_str(), syntax);
-    if (saved.bad()) return refused(saved);
-    return Ok{};
+    if (file.saveFile(temporary.c_str(), syntax).good()) return Ok{};
+    return failure(path.string(), fmt::format("the {} cannot be written", name),
+                   "Check the folder's permissions and space");
   });
 }
 

@@ -5,12 +5,10 @@
 #include <vtkOutputWindow.h>
 #include <vtkSmartPointer.h>
 
-#include <string>
-
 namespace stylet::detail {
 
-/// Collects the messages that VTK would print. VTK reports errors only as text, and a reader that failed often returns
-/// a part of the data.
+/// Takes the messages that VTK would print. VTK reports errors only as text, and a reader that failed often returns a
+/// part of the data. The text itself is that of a library: readers say in their own words what is wrong with the file.
 class VtkMessages : public vtkOutputWindow {
  public:
   static VtkMessages* New();
@@ -19,18 +17,16 @@ class VtkMessages : public vtkOutputWindow {
   /// Replaces VTK's own output window for the rest of the process, which reads one file.
   static vtkSmartPointer<VtkMessages> install();
 
-  void DisplayErrorText(const char* text) override;
+  void DisplayErrorText(const char*) override { failed_ = true; }
   void DisplayWarningText(const char*) override {}
   void DisplayGenericWarningText(const char*) override {}
   void DisplayDebugText(const char*) override {}
   void DisplayText(const char*) override {}
 
-  [[nodiscard]] bool failed() const { return !first_error_.empty(); }
-  /// The text of the first error in one line, without source file and object address.
-  [[nodiscard]] const std::string& first_error() const { return first_error_; }
+  [[nodiscard]] bool failed() const { return failed_; }
 
  private:
-  std::string first_error_;
+  bool failed_ = false;
 };
 
 }  // namespace stylet::detail

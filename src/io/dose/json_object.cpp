@@ -3,6 +3,7 @@
 
 #include "detail/input_file.hpp"
 #include "detail/json_text.hpp"
+#include "stylet/core/json_text.hpp"
 #include "stylet/core/nearest_name.hpp"
 
 #include <fmt/format.h>
@@ -18,8 +19,7 @@ namespace {
 constexpr std::size_t kLongestShown = 60;  // characters of a wrong value that a message shows
 
 Error wrong_value(const std::string& place, const nlohmann::json& value, const char* expected) {
-  std::string shown = value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  if (shown.size() > kLongestShown) shown = shown.substr(0, kLongestShown) + " …";
+  const std::string shown = shortened(json_text(value), kLongestShown);
   return input_error(place, fmt::format("the value is {}, {} is expected", shown, expected), "Correct this value");
 }
 
@@ -84,10 +84,11 @@ Result<nlohmann::json> read_json(const std::filesystem::path& path, const char* 
                        "Name a file as docs/formats.md describes it");
   }
   if (!json.contains("version") || json["version"] != version) {
-    return input_error(file,
-                       fmt::format("format version {} is unknown, {} is expected",
-                                   json.contains("version") ? json["version"].dump() : "(none)", version),
-                       fmt::format("Write \"version\": {}, or use the Stylet that wrote the file", version));
+    return input_error(
+        file,
+        fmt::format("format version {} is unknown, {} is expected",
+                    json.contains("version") ? shortened(json_text(json["version"]), 60) : "(none)", version),
+        fmt::format("Write \"version\": {}, or use the Stylet that wrote the file", version));
   }
   return parsed;
 }

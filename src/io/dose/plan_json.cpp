@@ -5,6 +5,7 @@
 #include "dose/json_object.hpp"
 #include "dose/plan_builder.hpp"
 #include "dose/plan_words.hpp"
+#include "stylet/core/json_text.hpp"
 
 #include <fmt/format.h>
 
@@ -178,7 +179,7 @@ Result<> write_plan_json(const DosePlan& plan, const std::filesystem::path& path
   }
   return detail::write_whole(path, [&](const std::filesystem::path& temporary) -> Result<> {
     std::ofstream stream(temporary);
-    stream << json.dump(1) << '\n';
+    stream << json_text(json, 1) << '\n';
     if (stream.flush()) return Ok{};
     return failure(path.string(), "the plan cannot be written", "Check the folder's permissions and space");
   });

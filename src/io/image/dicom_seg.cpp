@@ -376,7 +376,7 @@ Result<LabelImage> parse_dicom_seg(const std::filesystem::path& path, const Mask
   DcmDataset& data = *file.getDataset();
   if (Result<> right = check_is_segmentation(data, source); !right) return right.error();
   if (status.bad()) {
-    return input_error(source, fmt::format("the DICOM file cannot be read to its end ({})", status.text()),
+    return input_error(source, "the DICOM file cannot be read to its end",
                        "The file is truncated or damaged; copy or export it again");
   }
   if (integer_of(data, DCM_InConcatenationTotalNumber).value_or(1) > 1) {

@@ -204,7 +204,7 @@ Result<LabelImage> parse_nifti(const std::filesystem::path& path, const MaskRead
   reader->SetFileName(path.c_str());
   reader->UpdateInformation();
   if (messages->failed()) {
-    return input_error(source, fmt::format("the NIfTI file cannot be read ({})", messages->first_error()),
+    return input_error(source, "the header of the NIfTI file cannot be read",
                        "The file is truncated or damaged; copy or export it again");
   }
   vtkNIFTIImageHeader& header = *reader->GetNIFTIHeader();

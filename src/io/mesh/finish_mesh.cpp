@@ -48,8 +48,8 @@ void set_regions(const RawMesh& raw, TetMesh& mesh) {
   for (auto& [tag, number] : index) {
     number = static_cast<int>(mesh.regions.size());
     const auto name = raw.tag_names.find(tag);
-    std::string text =
-        name != raw.tag_names.end() && !name->second.empty() ? printable(name->second) : fmt::format("region {}", tag);
+    std::string text = name != raw.tag_names.end() && !name->second.empty() ? printable_name(name->second)
+                                                                            : fmt::format("region {}", tag);
     // Two numbers may have the same name in the file, but regions need different names.
     if (mesh.region_index(text) >= 0) text += fmt::format(" {}", tag);
     mesh.regions.push_back(std::move(text));

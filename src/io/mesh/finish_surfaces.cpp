@@ -66,16 +66,19 @@ double signed_volume(const Surface& surface) {
 
 }  // namespace
 
-Surface to_surface(vtkPolyData& data, std::string name) {
+Result<Surface> to_surface(vtkPolyData& data, std::string name, const std::string& source) {
   Surface surface;
   surface.name = std::move(name);
   surface.points.resize(static_cast<std::size_t>(data.GetNumberOfPoints()));
   for (std::size_t p = 0; p < surface.points.size(); ++p)
     data.GetPoint(static_cast<vtkIdType>(p), surface.points[p].data());
+  bool is_whole = true;
   const auto add = [&](vtkIdType a, vtkIdType b, vtkIdType c) {
     const vtkIdType count = data.GetNumberOfPoints();
-    if (std::min({a, b, c}) < 0 || std::max({a, b, c}) >= count)
-      throw std::runtime_error("a triangle refers to a point that is not in the file");
+    if (std::min({a, b, c}) < 0 || std::max({a, b, c}) >= count) {
+      is_whole = false;
+      return;
+    }
     surface.triangles.push_back({static_cast<Index>(a), static_cast<Index>(b), static_cast<Index>(c)});
   };
   vtkIdType count = 0;
@@ -90,6 +93,10 @@ Surface to_surface(vtkPolyData& data, std::string name) {
     strips->GetCurrentCell(count, ids);
     for (vtkIdType i = 2; i < count; ++i)
       i % 2 == 0 ? add(ids[i - 2], ids[i - 1], ids[i]) : add(ids[i - 1], ids[i - 2], ids[i]);
+  }
+  if (!is_whole) {
+    return input_error(source, "a triangle refers to a point that is not in the file",
+                       "The file is truncated or damaged; copy or export it again");
   }
   return surface;
 }

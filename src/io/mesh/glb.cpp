@@ -23,14 +23,16 @@ namespace {
 /// Converts to LPS the coordinates of a standing patient as in anatomical atlases: facing +z, head +y, left side +x.
 Vec3 to_lps(const Vec3& x, double scale) { return scale * Vec3(x.x(), -x.z(), x.y()); }
 
-/// Collects all triangles below a block into one surface.
-void collect(vtkDataObject* block, Surface& into) {
-  if (auto* data = vtkPolyData::SafeDownCast(block)) {
-    const Surface part = to_surface(*data, {});
-    const auto offset = static_cast<Index>(into.points.size());
-    into.points.insert(into.points.end(), part.points.begin(), part.points.end());
-    for (const auto& t : part.triangles) into.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
-  }
+/// Collects all triangles below a block into one surface. Error: that of to_surface().
+Result<> collect(vtkDataObject* block, Surface& into, const std::string& source) {
+  auto* data = vtkPolyData::SafeDownCast(block);
+  if (data == nullptr) return Ok{};
+  const Result<Surface> part = to_surface(*data, {}, source);
+  if (!part) return part.error();
+  const auto offset = static_cast<Index>(into.points.size());
+  into.points.insert(into.points.end(), part->points.begin(), part->points.end());
+  for (const auto& t : part->triangles) into.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  return Ok{};
 }
 
 /// The names of the scene's nodes from the file's JSON part (glTF 2.0, 4.4); VTK does not provide them.
@@ -63,23 +65,24 @@ int node_number(vtkMultiBlockDataSet& parent, unsigned index) {
 
 /// Collects the surfaces below a block. VTK makes a block for each node, which contains blocks for the node's mesh
 /// (whose primitives are the surfaces) and for its children.
-void walk(vtkMultiBlockDataSet& parent, Surface& own, const std::vector<std::string>& names,
-          std::vector<Surface>& surfaces) {
+Result<> walk(vtkMultiBlockDataSet& parent, Surface& own, const std::vector<std::string>& names,
+              std::vector<Surface>& surfaces, const std::string& source) {
   for (unsigned i = 0; i < parent.GetNumberOfBlocks(); ++i) {
     auto* children = vtkMultiBlockDataSet::SafeDownCast(parent.GetBlock(i));
     const int number = node_number(parent, i);
     if (children == nullptr) {
-      collect(parent.GetBlock(i), own);
+      if (Result<> done = collect(parent.GetBlock(i), own, source); !done) return done;
     } else if (number < 0) {
-      walk(*children, own, names, surfaces);
+      if (Result<> done = walk(*children, own, names, surfaces, source); !done) return done;
     } else {
       Surface node;
       node.name = static_cast<std::size_t>(number) < names.size() ? names[number] : "";
       if (node.name.empty()) node.name = fmt::format("node {}", number);
-      walk(*children, node, names, surfaces);
+      if (Result<> done = walk(*children, node, names, surfaces, source); !done) return done;
       if (!node.triangles.empty()) surfaces.push_back(std::move(node));
     }
   }
+  return Ok{};
 }
 
 }  // namespace
@@ -93,15 +96,13 @@ Result<SurfacesWithNotes> parse_glb(const std::filesystem::path& path, double sc
   reader->Update();
   auto* scene = vtkMultiBlockDataSet::SafeDownCast(reader->GetOutput());
   if (messages->failed() || reader->GetErrorCode() != 0 || scene == nullptr) {
-    return input_error(source,
-                       fmt::format("the GLB scene cannot be read ({})",
-                                   messages->failed() ? messages->first_error() : "no reason given"),
+    return input_error(source, "the GLB scene cannot be read: its data do not fit their description",
                        "The file is truncated, damaged or compressed (Draco); copy or export it again");
   }
   std::vector<Surface> raw;
   Surface loose;
   loose.name = path.stem().string();
-  walk(*scene, loose, node_names(path), raw);
+  if (Result<> done = walk(*scene, loose, node_names(path), raw, source); !done) return done.error();
   if (!loose.triangles.empty()) raw.push_back(std::move(loose));
   for (Surface& surface : raw) {
     for (Vec3& x : surface.points) x = to_lps(x, scale > 0.0 ? scale : 1000.0);

@@ -82,17 +82,13 @@ void GmshLibrary::start() const {
 
 void GmshLibrary::merge(const std::string& file) const { call<decltype(gmshMerge)>("gmshMerge", file.c_str()); }
 
-std::string GmshLibrary::first_error() const {
+bool GmshLibrary::has_failed() const {
   char** lines = nullptr;
   std::size_t count = 0;
   call<decltype(gmshLoggerGet)>("gmshLoggerGet", &lines, &count);
-  std::string first;
-  for (char* text : taken(lines, count)) {
-    const std::string line = taken(text);
-    if (!first.empty() || !line.starts_with("Error")) continue;
-    first = line.substr(line.find(':') == std::string::npos ? 0 : line.find(':') + 2);
-  }
-  return first;
+  bool failed = false;
+  for (char* text : taken(lines, count)) failed = taken(text).starts_with("Error") || failed;
+  return failed;
 }
 
 GmshLibrary::DimTags GmshLibrary::entities(int dimension) const {

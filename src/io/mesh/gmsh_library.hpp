@@ -44,8 +44,8 @@ class GmshLibrary {
   /// Initialises gmsh without the user's configuration files, silent, with one thread and a log.
   void start() const;
   void merge(const std::string& file) const;
-  /// The first error in gmsh's log; empty if there is none. gmsh continues after errors.
-  [[nodiscard]] std::string first_error() const;
+  /// Whether gmsh's log has an error. gmsh continues after errors.
+  [[nodiscard]] bool has_failed() const;
 
   /// @param dimension −1: all
   [[nodiscard]] DimTags entities(int dimension) const;

@@ -86,20 +86,19 @@ Result<SurfacesWithNotes> parse_surface(const std::filesystem::path& path, FileK
       break;
   }
   if (messages->failed() || error != 0 || data == nullptr) {
-    return input_error(source,
-                       fmt::format("the surface cannot be read ({})",
-                                   messages->failed() ? messages->first_error() : "no reason given"),
+    return input_error(source, "the surface cannot be read: its data end too early or do not fit their description",
                        "The file is truncated or damaged; copy or export it again");
   }
   const VtkHints hints = vtk_hints(*data, header);
   const double unit = scale > 0.0 ? scale : hints.unit_mm > 0.0 ? hints.unit_mm : 1.0;
-  Surface surface = to_surface(*data, path.stem().string());
-  for (Vec3& x : surface.points) {
+  Result<Surface> surface = to_surface(*data, path.stem().string(), source);
+  if (!surface) return surface.error();
+  for (Vec3& x : surface->points) {
     x *= unit;
     if (hints.ras) x.head<2>() *= -1.0;
   }
   std::vector<Surface> surfaces;
-  surfaces.push_back(std::move(surface));
+  surfaces.push_back(*std::move(surface));
   return finish_surfaces(std::move(surfaces), source);
 }
 

@@ -16,7 +16,9 @@ Result<SurfacesWithNotes> parse_surface(const std::filesystem::path& path, FileK
 Result<SurfacesWithNotes> parse_glb(const std::filesystem::path& path, double scale);
 
 /// Converts polygons and strips to triangles: points stay unchanged, faces with more than three corners become fans.
-Surface to_surface(vtkPolyData& data, std::string name);
+/// Error: a triangle refers to a point that is not there.
+/// @param source name of the file, for messages
+Result<Surface> to_surface(vtkPolyData& data, std::string name, const std::string& source);
 
 /// Cleans surfaces: merges coincident points, drops triangles without area and surfaces without triangles, and turns
 /// the normals of closed surfaces outward. Errors: NaN; nothing left; a total extent that indicates wrong units (< 1 mm

@@ -117,9 +117,7 @@ Result<RawMesh> parse_vtk_mesh(const std::filesystem::path& path, bool xml) {
     if (reader->GetHeader() != nullptr) header = reader->GetHeader();
   }
   if (messages->failed() || error != 0 || grid == nullptr) {
-    return input_error(source,
-                       fmt::format("the VTK file cannot be read ({})",
-                                   messages->failed() ? messages->first_error() : "no reason given"),
+    return input_error(source, "the VTK file cannot be read: its data end too early or do not fit their description",
                        "The file is truncated or damaged; copy or export it again");
   }
   Result<RawMesh> raw = to_raw(*grid, source);

@@ -196,8 +196,12 @@ Result<ModelFile> read_model_file(const fs::path& path, const Progress& progress
     return content_of(index, Reader(file, index), progress);
   } catch (const std::bad_alloc&) {
     throw;
-  } catch (const std::exception& e) {
+  } catch (const NotSealed& e) {
     return refuse(std::string("damaged: ") + e.what());
+  } catch (const NotAModel& e) {
+    return refuse(std::string("damaged: ") + e.what());
+  } catch (const std::exception&) {
+    return refuse("damaged: its index does not describe a model");
   }
 }
 

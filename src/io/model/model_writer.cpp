@@ -5,6 +5,7 @@
 #include "h5_mesh.hpp"
 #include "model/model_format.hpp"
 #include "model/sealed_file.hpp"
+#include "stylet/core/json_text.hpp"
 #include "stylet/core/version.hpp"
 #include "stylet/io/scenario_io.hpp"
 
@@ -56,10 +57,10 @@ std::string index_of(hid_t file, const ModelFile& content) {
     const h5::Handle set = h5::dataset(file, name.c_str());
     arrays[name] = {{"at", h5::place(set)}, {"item_bytes", h5::item_bytes(set)}, {"shape", h5::extents(set)}};
   }
-  return nlohmann::ordered_json{{"format", kModelFileFormat},       {"format_version", kModelFileVersion},
-                                {"version", content.version},       {"element", content.element},
-                                {"belongs_to", content.belongs_to}, {"arrays", arrays}}
-      .dump(1);
+  const nlohmann::ordered_json index{{"format", kModelFileFormat},       {"format_version", kModelFileVersion},
+                                     {"version", content.version},       {"element", content.element},
+                                     {"belongs_to", content.belongs_to}, {"arrays", arrays}};
+  return json_text(index, 1);
 }
 
 void write(const fs::path& path, const ModelFile& content, const Progress& progress) {

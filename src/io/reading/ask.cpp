@@ -21,18 +21,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The last line that a library printed, as a clause of a message; empty if it printed nothing.
-std::string last_words(const std::string& noise) {
-  std::string last;
-  for (const auto line : split(noise, '\n')) {
-    if (std::string words = trimmed(line); !words.empty()) last = std::move(words);
-  }
-  for (char& c : last) {
-    if (static_cast<unsigned char>(c) < 0x20) c = ' ';
-  }
-  return last.empty() ? "" : fmt::format("; its last words: {}", last.substr(0, 200));
-}
-
 constexpr double kBase_s = 5.0;
 constexpr double kPacked_s = 2.0;     // time limit per megabyte of the file
 constexpr double kUnpacked_s = 0.03;  // time limit per megabyte of unpacked data
@@ -137,24 +125,20 @@ int entries_of(const fs::path& folder) {
 
 /// The error for a parser that ended without an answer.
 Error died(const fs::path& path, const ChildOutcome& outcome, const ChildLimits& limits, const char* cure) {
-  const std::string words = last_words(outcome.noise);
   switch (outcome.end) {
     case ChildEnd::not_started:
       return failure(path.string(),
                      fmt::format("no process could be started to read it ({})", std::strerror(outcome.code)),
                      "Close other programs and try again");
     case ChildEnd::timed_out:
-      return input_error(path.string(), fmt::format("the parser did not finish within {:.0f} s{}", limits.cpu_s, words),
-                         cure);
+      return input_error(path.string(), fmt::format("the parser did not finish within {:.0f} s", limits.cpu_s), cure);
     case ChildEnd::signalled:
-      return input_error(
-          path.string(),
-          fmt::format("the parser stopped (signal {}, {}){}", outcome.code, strsignal(outcome.code), words), cure);
+      return input_error(path.string(), fmt::format("the parser stopped (signal {})", outcome.code), cure);
     case ChildEnd::exited:
     case ChildEnd::finished:
       break;
   }
-  return input_error(path.string(), fmt::format("the parser gave up (exit status {}){}", outcome.code, words), cure);
+  return input_error(path.string(), fmt::format("the parser gave up (exit status {})", outcome.code), cure);
 }
 
 /// The answers inside of the reading program; empty outside of it.
@@ -177,9 +161,7 @@ ChildLimits limits_for(const fs::path& path) {
   return limits;
 }
 
-Error threw(const fs::path& path, const char* what, const char* cure) {
-  return input_error(path.string(), fmt::format("the parser gave up: {}", what), cure);
-}
+Error threw(const fs::path& path, const char* cure) { return input_error(path.string(), "the parser gave up", cure); }
 
 Error out_of_memory(const fs::path& path) {
   return input_error(

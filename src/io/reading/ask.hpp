@@ -34,7 +34,7 @@ void fields(auto& wire, ReadingRequest& r) { wire(r.version, r.parent, r.cpu_s, 
 ChildLimits limits_for(const std::filesystem::path& path);
 
 /// The errors for a parser that threw an exception, and for one that asked for too much memory.
-Error threw(const std::filesystem::path& path, const char* what, const char* cure);
+Error threw(const std::filesystem::path& path, const char* cure);
 Error out_of_memory(const std::filesystem::path& path);
 
 /// The bytes that a task answers with, those of a Result. Errors: the program is missing, or it ended without an
@@ -58,8 +58,8 @@ Result<Answer> ask(const Task<Answer, Arguments...>& task, const std::filesystem
   if (!bytes) return bytes.error();
   try {
     return from_bytes<Answer>(*bytes);
-  } catch (const std::exception& error) {
-    return threw(path, error.what(), task.cure);
+  } catch (const std::exception&) {
+    return threw(path, task.cure);
   }
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "reading/ask.hpp"
-#include "stylet/core/printable.hpp"
 
 #include <filesystem>
 #include <functional>
@@ -49,17 +48,11 @@ class TaskTable {
         return parse();
       } catch (const std::bad_alloc&) {
         return out_of_memory(path);
-      } catch (const std::exception& error) {
-        return threw(path, error.what(), cure);
       } catch (...) {
-        return threw(path, "unknown exception", cure);
+        return threw(path, cure);
       }
     }();
-    if (result) return to_bytes(result);
-    // Errors quote words of the file.
-    const Error& error = result.error();
-    Result<Answer> safe(Error{error.kind, printable(error.where), printable(error.what), printable(error.cure)});
-    return to_bytes(safe);
+    return to_bytes(result);
   }
 
   std::map<std::string, std::function<std::string(std::string_view)>> parsers_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "stylet/core/field.hpp"
+#include "stylet/core/json_text.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -25,9 +26,9 @@ inline Json or_null(const std::string& text) { return text.empty() ? Json(nullpt
 /// A number, or null where it is 0, which stands for none.
 inline Json or_null(double positive) { return positive > 0.0 ? Json(positive) : Json(nullptr); }
 
-/// Text for files and for scripts. Numbers that are not finite become null; bytes that are not UTF-8 are replaced.
-inline std::string pretty(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
-inline std::string compact(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+/// Text for files and for scripts: json_text().
+inline std::string pretty(const Json& json) { return json_text(json, 2) + "\n"; }
+inline std::string compact(const Json& json) { return json_text(json); }
 
 /// A key or a word that a record cannot have.
 struct BadJson : std::runtime_error {

@@ -2,15 +2,21 @@
 #include "h5.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <string_view>
+#include <system_error>
 
 namespace stylet::h5 {
 
 namespace {
 
-/// Keeps the innermost entry of HDF5's error stack, which has the cause ("No space left on device").
-herr_t keep_first(unsigned, const H5E_error2_t* entry, void* text) {
-  auto& reason = *static_cast<std::string*>(text);
-  if (reason.empty() && entry->desc != nullptr) reason = entry->desc;
+/// Takes the number of the system's error from an entry of HDF5's error stack, which names it as "errno = 28".
+herr_t take_number(unsigned, const H5E_error2_t* entry, void* to) {
+  constexpr std::string_view kSign = "errno = ";
+  const std::string_view words = entry->desc != nullptr ? entry->desc : "";
+  const auto at = words.find(kSign);
+  if (at != std::string_view::npos)
+    (void)std::from_chars(words.data() + at + kSign.size(), words.data() + words.size(), *static_cast<int*>(to));
   return 0;
 }
 
@@ -107,6 +113,10 @@ Handle timeless(hid_t kind) {
 
 }  // namespace
 
+Failure::Failure(const char* action, int number)
+    : std::runtime_error(number != 0 ? std::generic_category().message(number) + " (" + action + ")"
+                                     : "damaged or incomplete (" + std::string(action) + ")") {}
+
 namespace {
 std::recursive_mutex& library() {
   static std::recursive_mutex mutex;
@@ -133,9 +143,9 @@ struct SilentEnd {
 
 void fail(const char* action) {
   static const SilentEnd before_that_of_hdf5;  // destroyed before HDF5 shuts down, which was initialised earlier
-  std::string reason;
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &reason);
-  throw Failure(std::string(action) + ": " + (reason.empty() ? "HDF5 gave no reason" : reason));
+  int number = 0;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_number, &number);
+  throw Failure(action, number);
 }
 
 Handle create_file(const char* path) {

@@ -11,13 +11,16 @@
 #include <utility>
 #include <vector>
 
-/// A thin layer over the HDF5 C library: handles that close themselves, and errors with the library's own reason. The
+/// A thin layer over the HDF5 C library: handles that close themselves, and errors that name the part of the file. The
 /// functions throw h5::Failure; their callers in this folder catch it.
 namespace stylet::h5 {
 
-/// Exception for an error of HDF5, with its innermost reason.
+/// Exception for an error of HDF5, in words of our own.
 struct Failure : std::runtime_error {
   using std::runtime_error::runtime_error;
+  /// @param action the part of the file, or what was done with it
+  /// @param number errno of the system's call that failed; 0: none did, so the file's content is at fault
+  Failure(const char* action, int number);
 };
 
 /// Exclusive access of a thread to HDF5, which is not thread-safe (as Debian builds it): other threads wait during the
@@ -35,7 +38,7 @@ class LibraryTurn {
   void* data_ = nullptr;
 };
 
-/// Returns a valid status or identifier unchanged; throws Failure("action: reason") for an invalid one.
+/// Returns a valid status or identifier unchanged; throws Failure for an invalid one.
 template <class Status>
 Status check(Status status, const char* action);
 [[noreturn]] void fail(const char* action);

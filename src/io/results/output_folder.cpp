@@ -2,6 +2,7 @@
 #include "output_folder.hpp"
 
 #include "detail/whole_file.hpp"
+#include "stylet/core/printable.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -95,7 +96,7 @@ Result<> write_folder(const std::vector<File>& files, const fs::path& folder) {
 
 std::string csv_text(std::string_view text) {
   std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  for (const char c : printable_lines(text)) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   return quoted + "\"";
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "recorder.hpp"
 
+#include "stylet/core/survive.hpp"
+
 #include <chrono>
 #include <utility>
 
@@ -15,7 +17,10 @@ Recorder::Recorder(RunFileWriter writer)
 
 Recorder::~Recorder() {
   // A run that ends without finish() still writes everything that it recorded.
-  if (!closed_) (void)close(nullptr);
+  const auto ignore = [](const Error&) {};
+  if (!closed_)
+    survive(
+        "the end of the recording", [this] { (void)close(nullptr); }, ignore);
 }
 
 Result<> Recorder::write_pending() {
@@ -45,17 +50,25 @@ void Recorder::run(const std::stop_token& stop) {
       std::unique_lock lock(mutex_);
       wake_.wait_for(lock, stop, kPeriod, [] { return false; });
     }
-    if (auto done = write_pending(); !done) {
+    bool goes_on = true;
+    const auto fail = [&](const Error& why) {
+      goes_on = false;
       const std::lock_guard lock(mutex_);
-      error_ = done.error();
-      return;
-    }
+      error_ = why;
+    };
+    survive(
+        "the recording",
+        [&] {
+          if (auto done = write_pending(); !done) fail(done.error());
+        },
+        fail);
+    if (!goes_on) return;
   }
 }
 
 Result<> Recorder::close(const Summary* summary) {
   thread_.request_stop();
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
   closed_ = true;
   Result<> done = error_ ? Result<>(*error_) : write_pending();
   if (done.ok() && summary != nullptr) done = writer_.append_summary(*summary);

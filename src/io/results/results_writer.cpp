@@ -8,6 +8,7 @@
 #include "record/run_columns.hpp"
 #include "recorder.hpp"
 #include "report/report_html.hpp"
+#include "stylet/core/survive.hpp"
 #include "stylet/io/hole_map_io.hpp"
 #include "stylet/io/recording_io.hpp"
 #include "summary_json.hpp"
@@ -107,8 +108,8 @@ template <class Work>
 auto guarded(const fs::path& folder, Work work) -> decltype(work()) {
   try {
     return work();
-  } catch (const std::exception& e) {
-    return failure(folder.string(), fmt::format("cannot be written: {}", e.what()),
+  } catch (const std::exception&) {
+    return failure(folder.string(), fmt::format("cannot be written: {}", caught_exception("").what),
                    "Close other programs or use a smaller mesh, then run again");
   }
 }

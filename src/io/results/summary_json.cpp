@@ -29,8 +29,10 @@ Result<Summary> parse_summary_json(std::string_view text, const std::string& whe
     record::read_json(json, summary);
     if (json.contains("in_place")) record::read_json(json.at("in_place"), summary.in_place.emplace());
     return summary;
-  } catch (const Json::exception& e) {
-    return refuse(e.what());
+  } catch (const Json::parse_error&) {
+    return refuse("it is not JSON");
+  } catch (const Json::exception&) {
+    return refuse("a value is missing or of another kind");
   } catch (const record::BadJson& e) {
     return refuse(e.what());
   }

@@ -10,6 +10,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <tuple>
 
@@ -106,17 +107,46 @@ std::string cure_for(std::string_view line) {
   return "Write key = value, texts in quotes (\"D4\"), lists in brackets ([1, 2, 3]), each key once in its table";
 }
 
+/// The fault that the parser has found, in words for people who do not know the grammar of TOML.
+/// @param what the parser's own words
+std::string fault_of(std::string_view what) {
+  struct Fault {
+    std::string_view sign, words;
+  };
+  constexpr std::array<Fault, 14> kFaults{{{"end-of-file", "the file ends too early"},
+                                           {"cannot redefine", "this key or table was given before"},
+                                           {"cannot insert", "this key or table was given before"},
+                                           {"control character", "there is a control character"},
+                                           {"escape sequence", "a backslash in a text has to be written twice"},
+                                           {"leading zeroes", "a number begins with a needless 0"},
+                                           {"nderscores", "an underscore stands in a wrong place"},
+                                           {"not representable", "a number is too large"},
+                                           {"too long", "a number is too long"},
+                                           {"exceed", "a text, a number or a list is too long"},
+                                           {"brackets must be", "the brackets of a table must touch: [[name]]"},
+                                           {"multi-line strings", "a name may not go on in the next line"},
+                                           {"saw comma", "a comma is not expected here"},
+                                           {"dangling comma", "a comma before the closing brace is not allowed"}}};
+  const auto known = std::find_if(kFaults.begin(), kFaults.end(),
+                                  [&](const Fault& fault) { return what.find(fault.sign) != std::string_view::npos; });
+  if (known != kFaults.end()) return std::string(known->words);
+  constexpr std::string_view kSaw = "saw '";
+  const auto saw = what.rfind(kSaw);
+  if (saw == std::string_view::npos) return "this is neither a number, a text in quotes, a list, true nor false";
+  const std::string_view rest = what.substr(saw + kSaw.size());
+  const std::string_view seen = rest.substr(0, rest.rfind('\''));
+  const bool is_end = seen.empty() || seen.front() == '\n' || seen.front() == '\r' || seen.starts_with("\\n");
+  return is_end ? "the line ends too early" : fmt::format("'{}' is not expected here", seen);
+}
+
 /// @param what message of the parser @param line text of the line where it stopped
-Error syntax_error(const std::string& where, std::string what, const std::string& line) {
+Error syntax_error(const std::string& where, const std::string& what, const std::string& line) {
   if (lower(what).find("utf-8") != std::string::npos) {
     return input_error(where, "this is not text in UTF-8", "Save the file as text in UTF-8, or name another file");
   }
-  if (what.starts_with("Error ")) what.erase(0, 6);
-  std::replace_if(
-      what.begin(), what.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
   // Quote the line if it is short and has readable characters only.
   const bool readable = !line.empty() && line.size() <= 100 && is_readable(line);
-  return input_error(where, fmt::format("{}this is not valid TOML ({})", readable ? line + ": " : "", what),
+  return input_error(where, fmt::format("{}this is not valid TOML ({})", readable ? line + ": " : "", fault_of(what)),
                      cure_for(readable ? line : ""));
 }
 

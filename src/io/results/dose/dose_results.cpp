@@ -3,6 +3,7 @@
 
 #include "dose/dose_page.hpp"
 #include "output_folder.hpp"
+#include "stylet/core/survive.hpp"
 #include "stylet/io/dose_io.hpp"
 
 #include <fmt/format.h>
@@ -88,8 +89,8 @@ Result<> write_all_results(const DoseEvaluation& evaluation, const fs::path& fol
 Result<> write_dose_results(const DoseEvaluation& evaluation, const fs::path& folder, const Progress& progress) {
   try {
     return write_all_results(evaluation, folder, progress);
-  } catch (const std::exception& e) {
-    return failure(folder.string(), fmt::format("cannot be written: {}", e.what()),
+  } catch (const std::exception&) {
+    return failure(folder.string(), fmt::format("cannot be written: {}", caught_exception("").what),
                    "Close other programs or use a coarser dose grid, then run again");
   }
 }

@@ -4,6 +4,7 @@
 #include "detail/child.hpp"
 #include "pictures/canvas.hpp"
 #include "pictures/views.hpp"
+#include "stylet/core/survive.hpp"
 
 #include <fmt/format.h>
 
@@ -61,8 +62,8 @@ std::string draw_some(std::span<const Drawing> list) {
       parcel += fmt::format("{}:", png->size()) + *png;
     }
     return parcel;
-  } catch (const std::exception& e) {
-    return e.what();
+  } catch (const std::exception&) {
+    return caught_exception("drawing").what;
   }
 }
 
@@ -85,7 +86,7 @@ std::string reason_of(const detail::ChildOutcome& outcome) {
     case detail::ChildEnd::finished:
       return outcome.result;
     case detail::ChildEnd::signalled:
-      return fmt::format("the OpenGL driver crashed ({})", strsignal(outcome.code));
+      return fmt::format("the OpenGL driver crashed (signal {})", outcome.code);
     case detail::ChildEnd::exited:
       return "the OpenGL driver ended its process";
     case detail::ChildEnd::timed_out:

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/text.hpp"
 
+#include "stylet/core/printable.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -11,7 +13,7 @@ namespace stylet::results {
 std::string html_escaped(std::string_view text) {
   std::string escaped;
   escaped.reserve(text.size());
-  for (const char c : text) {
+  for (const char c : printable_lines(text)) {
     switch (c) {
       case '&':
         escaped += "&amp;";

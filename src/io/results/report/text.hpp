@@ -8,7 +8,8 @@
 /// Text conversions for HTML pages.
 namespace stylet::results {
 
-/// Escapes a text for an element or a quoted attribute: & < > " ' become entities.
+/// Escapes a text for an element or a quoted attribute: & < > " ' become entities, and control characters blanks
+/// (printable_lines()).
 std::string html_escaped(std::string_view text);
 
 /// Escapes a text, keeps numbers and their units on one line ("0.42 N"), and puts minus signs (with_minus_signs()).
