@@ -173,7 +173,7 @@ TEST(Outbox, a_curve_that_has_waited_has_as_many_samples_as_it_is_worth) {
 
 TEST(Outbox, sends_smaller_pictures_to_a_page_that_gets_them_late) {
   Outbox box;
-  const auto size_after = [&, k = 0U](double lag_s) mutable {
+  auto size_after = [&, k = 0U](double lag_s) mutable {
     box.put(picture(0.0, 6000), 0.0);
     const std::size_t size = box.next()->size();
     box.seen({k++}, lag_s);
