@@ -46,6 +46,11 @@ fs::path models_beside_program() {
   return program.parent_path().parent_path() / "share" / "stylet" / "models";
 }
 
+void warn_if_not_kept(const PreparedModel& prepared, Console& console) {
+  if (!prepared.not_kept.empty())
+    console.warn("The model was not stored in the cache, so the next start takes as long: " + prepared.not_kept);
+}
+
 /// Opens a scenario with a plan of seeds and no insertion: its needles are those of the plan.
 Result<serve::LoadedCase> load_implant(const fs::path& file, const std::vector<std::string>& settings,
                                        const ModelCache& cache, Console& console, const Progress& progress) {
@@ -59,6 +64,7 @@ Result<serve::LoadedCase> load_implant(const fs::path& file, const std::vector<s
   }
   auto prepared = prepare_needle_of_file(file.string(), settings, plan->needles.front(), progress, &cache);
   if (!prepared) return prepared.error();
+  warn_if_not_kept(*prepared, console);
   serve::LoadedCase loaded{prepared->model, prepared->notes};
   for (const auto* notes : {&plan->plan.notes, &plan->structures.notes})
     loaded.notes.insert(loaded.notes.end(), notes->begin(), notes->end());
@@ -106,8 +112,7 @@ Result<serve::CaseSource> case_of(const fs::path& file, const ServeArguments& ar
               "needle",
               "Give its scenario, or prepare the model with --set procedure.stabilising=[]");
         }
-        if (!prepared->not_kept.empty())
-          console.warn("The model was not stored in the cache, so the next start takes as long: " + prepared->not_kept);
+        warn_if_not_kept(*prepared, console);
         for (const std::string& warning : prepared->warnings()) console.warn(warning);
         return serve::LoadedCase{prepared->model, prepared->notes};
       }};
