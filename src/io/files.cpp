@@ -23,7 +23,8 @@ Result<> make_folder(const fs::path& folder) {
   if (fs::is_directory(place, code)) return Ok{};
   const fs::path above = place.has_parent_path() ? place.parent_path() : fs::path(".");
   if (above != place) {
-    if (Result<> made = make_folder(above); !made) return made;
+    if (const Result<> made = make_folder(above); !made)
+      return Error{made.error().kind, place.string(), made.error().what, made.error().cure};
   }
   if (::mkdir(place.c_str(), 0777) == 0) return detail::sync(above);
   const int reason = errno;

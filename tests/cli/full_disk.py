@@ -17,7 +17,8 @@ from live_viewer import LiveViewer
 from program import STYLET
 
 HANGS_AFTER_S = 300
-PAGE_KB = 4  # the smallest file of a file system in memory
+FILLER = "filler"
+PAGE_KB = 4  # the smallest piece of a file system in memory
 PLENTY_KB = 200_000
 
 BODY = BLOCK.replace("[fixed]", 'regions = { tissue = "body", lump = "prostate" }\n[fluoroscopy]\npixels = 128\n[fixed]')
@@ -60,6 +61,7 @@ COMMANDS = {
     "dose": (("dose", "plan.json", "--structures", "structures.json", "-o", "DISK/out"), "out/dose.json"),
     "fluoro": (("fluoro", "body.toml", "-o", "DISK/out.mha"), "out.mha"),
     "image": (("image", "phantom.toml", "--set", "mesh.nodes=800", "-o", "DISK/out.png"), "out.png"),
+    "image_volume": (("image", "phantom.toml", "--set", "mesh.nodes=800", "--all", "-o", "DISK/out.mha"), "out.mha"),
     "implant": (("implant", "implant.toml", "-o", "DISK/out"), "out/summary.json"),
     "bench": (("bench", "remesh", "--nodes", "125", "--json", "DISK/out.json"), "out.json"),
     "validate": (("validate", "--only", "patch_test", "-o", "DISK/out"), "out/validate.json"),
@@ -83,11 +85,13 @@ def write_inputs(folder):
 
 
 class Mounted:
-    """A file system of this size in memory. Needs the right to mount."""
+    """A file system in memory with this much space. Needs the right to mount."""
 
     def __init__(self, size_kB):
         self.folder = tempfile.mkdtemp(prefix="stylet-disk-")
-        subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size_kB}k", "tmpfs", self.folder], check=True, capture_output=True)
+        subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size_kB + PAGE_KB}k", "tmpfs", self.folder], check=True,
+                       capture_output=True)
+        (Path(self.folder) / FILLER).write_bytes(bytes(1024 * PAGE_KB))  # a size of 0 would mean no limit
         self.limit = None
 
     def __enter__(self):
@@ -172,14 +176,15 @@ def run_on(disk, name, inputs):
     command = [STYLET, *(str(a).replace("DISK", disk.folder) for a in arguments)]
     is_server = name.startswith("serve")
     if is_server:
-        command += ["--port", "0", "--json", "-"]
+        command += ["--port", "0", "--json", "-", "--quiet"]
+    meshes = {**os.environ, "STYLET_CACHE": str(Path(inputs) / "meshes")}
     with subprocess.Popen(command, cwd=inputs, text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                          stderr=subprocess.PIPE, preexec_fn=disk.limit) as process:
+                          stderr=subprocess.PIPE, preexec_fn=disk.limit, env=meshes) as process:
         if is_server:
             push_for_a_moment(process)
         _, errors = process.communicate(timeout=HANGS_AFTER_S)
     errors = [line for line in errors.splitlines() if not re.search(r"( \.\.\.|: \d+ %)$", line)]
-    files = sorted(str(p.relative_to(disk.folder)) for p in Path(disk.folder).rglob("*"))
+    files = sorted(str(p.relative_to(disk.folder)) for p in Path(disk.folder).rglob("*") if p.name != FILLER)
     return End(process.returncode, errors, files)
 
 
@@ -208,12 +213,12 @@ def needed_kB(kind, name, inputs):
     with kind(PLENTY_KB) as disk:
         end = run_on(disk, name, inputs)
         assert end.status == 0, (name, end.errors)
-        sizes = [p.stat().st_blocks // 2 for p in Path(disk.folder).rglob("*")]
+        sizes = [p.stat().st_blocks // 2 for p in Path(disk.folder).rglob("*") if p.name != FILLER]
         return max(PAGE_KB, sum(sizes) if kind is Mounted else max(sizes, default=0))
 
 
 def sizes_kB(needed, count):
-    """Sizes from one page to a tenth more than is needed, each the same factor larger than the one before."""
+    """No space, and sizes from one page to a tenth more than is needed, each the same factor larger than the one before.
+    There are fewer than `count` where these are too near each other."""
     last = max(1.1 * needed / PAGE_KB, 2)
-    pages = {round(last ** (k / (count - 1))) for k in range(count)} if count > 1 else {1}
-    return sorted(PAGE_KB * p for p in pages)
+    return sorted({0} | {PAGE_KB * round(last ** (k / (count - 2))) for k in range(count - 1)})

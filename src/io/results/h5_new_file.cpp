@@ -140,6 +140,11 @@ herr_t truncate_disk(H5FD_t* file, hid_t /*transfer*/, hbool_t /*closing*/) {
   return 0;
 }
 
+/// Only for a driver with these calls does HDF5 mark the file as being written, which its readers require. The file
+/// needs no lock, since nobody else knows its hidden name.
+herr_t lock_disk(H5FD_t* /*file*/, hbool_t /*alone*/) { return 0; }
+herr_t unlock_disk(H5FD_t* /*file*/) { return 0; }
+
 hid_t driver() {
   static const H5FD_class_t about{.name = "stylet_new_file",
                                   .maxaddr = std::numeric_limits<off_t>::max(),
@@ -155,6 +160,8 @@ hid_t driver() {
                                   .read = read_disk,
                                   .write = write_disk,
                                   .truncate = truncate_disk,
+                                  .lock = lock_disk,
+                                  .unlock = unlock_disk,
                                   .fl_map = H5FD_FLMAP_DICHOTOMY};
   static const hid_t id = check(H5FDregister(&about), "create file");
   return id;

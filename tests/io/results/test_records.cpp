@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tests of the lists of fields: each record comes back from a file as it was written, and docs/results says what the
 // lists say.
+#include "h5_new_file.hpp"
 #include "record/attributes.hpp"
 #include "record/csv.hpp"
 #include "record/implant_columns.hpp"
