@@ -40,8 +40,8 @@ class FullDisk(InFolder):
             self.assertEqual(os.listdir(disk.folder), [full_disk.FILLER])
 
     def test_standard_output_that_takes_nothing_fails_with_one_line(self):
-        for arguments in (("info", "gland.json"), ("info", "gland.json", "--json", "-"), ("--help",), ("insert", "--print-schema"),
-                          ("validate", "--list"), ("dose", "--print-rules"), ("bench", "remesh", "--nodes", "125")):
+        for arguments in (("info", "gland.json"), ("info", "gland.json", "--quiet", "--json", "-"), ("--help",), ("insert", "--print-schema"),
+                          ("validate", "--list"), ("dose", "--print-rules")):
             with self.subTest(arguments=arguments), open("/dev/full", "w", encoding="ascii") as full:
                 done = subprocess.run([STYLET, *arguments], cwd=self.folder, stdout=full, stderr=subprocess.PIPE, text=True,
                                       check=False, timeout=full_disk.HANGS_AFTER_S)
