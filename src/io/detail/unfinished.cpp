@@ -119,6 +119,7 @@ std::optional<Unfinished> Unfinished::create(const fs::path& path, Kind kind, in
     if (reason == EEXIST) continue;
     if (reason != 0) return std::nullopt;
     Unfinished made(path, hidden, descriptor);
+    if (kind == Kind::private_file) (void)::fchmod(descriptor, 0600);  // whatever the umask
     (void)::flock(descriptor, LOCK_EX);  // where nothing can be locked, nothing is taken for abandoned either
     std::error_code code;
     if (fs::exists(hidden, code)) return made;
