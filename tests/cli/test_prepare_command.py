@@ -39,6 +39,7 @@ class Prepare(Cases):
     def test_a_stripped_program_finds_what_the_whole_one_has_kept(self):
         stripped = self.folder / "stylet"
         subprocess.run(["strip", "-o", stripped, STYLET], check=True)
+        (self.folder / "stylet-reader").symlink_to(Path(STYLET).parent / "stylet-reader")
         names = []
         for number, program in enumerate((STYLET, stripped)):
             models = self.folder / f"models{number}"
