@@ -3,6 +3,7 @@
 """stylet prepare: a saved model runs like its scenario, can be described, and is refused if it is incomplete."""
 import subprocess
 import unittest
+from pathlib import Path
 
 from insert_case import FAST, SMALL, Cases, without_step_times
 from program import STYLET
