@@ -14,8 +14,10 @@
 
 #include <fmt/format.h>
 
+#include <semaphore.h>
 #include <algorithm>
 #include <cmath>
+
 #include <csignal>
 #include <filesystem>
 
@@ -170,24 +172,26 @@ std::uintmax_t keep_bytes(double keep_GB) {
   return keep_GB > 0.0 ? static_cast<std::uintmax_t>(std::ceil(1e9 * keep_GB)) : 0;
 }
 
-/// Waits for SIGINT or SIGTERM.
+/// Waits for SIGINT or SIGTERM. A handler takes them, whichever thread they meet: libraries have threads that began
+/// before this program could block a signal in them.
 class EndSignal {
  public:
-  /// Blocks the signals. Must be called before any other thread starts, so that no thread receives them.
   EndSignal() {
-    sigemptyset(&signals_);
-    sigaddset(&signals_, SIGINT);
-    sigaddset(&signals_, SIGTERM);
-    pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+    sem_init(&came(), 0, 0);
+    for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { sem_post(&came()); });
   }
   void wait() {
-    int signal = 0;
-    sigwait(&signals_, &signal);
-    pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);  // a second signal ends the program at once
+    while (sem_wait(&came()) != 0) {
+    }
+    for (const int signal : {SIGINT, SIGTERM})
+      std::signal(signal, SIG_DFL);  // a second signal ends the program at once
   }
 
  private:
-  sigset_t signals_{};
+  static sem_t& came() {
+    static sem_t semaphore;
+    return semaphore;
+  }
 };
 
 Result<> run_serve(const ServeArguments& arguments, Console& console) {
