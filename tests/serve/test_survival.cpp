@@ -15,7 +15,7 @@ using namespace stylet::test;
 
 namespace {
 
-/// What the server has printed on the terminal.
+/// The text that the server has printed on the terminal.
 struct Terminal {
   std::mutex mutex;
   std::string text;

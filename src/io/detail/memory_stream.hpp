@@ -21,7 +21,7 @@ class MemoryStream {
 
   /// To be closed by its user.
   [[nodiscard]] std::FILE* stream() const { return stream_; }
-  /// What was written. To be called after the stream has been closed.
+  /// The bytes that were written. To be called after the stream has been closed.
   [[nodiscard]] std::string bytes() const { return {data_, size_}; }
 
  private:

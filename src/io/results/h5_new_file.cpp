@@ -30,7 +30,7 @@ struct Disk : H5FD_t {
   std::vector<std::pair<haddr_t, std::string>> kept;  ///< what could not be written, in order
 };
 
-/// What the properties of a file tell its driver.
+/// The settings that the access properties of a file hand to its driver.
 struct DriverSettings {
   const std::shared_ptr<int>* reason = nullptr;
 };
