@@ -217,8 +217,10 @@ def needed_kB(kind, name, inputs):
         return max(PAGE_KB, sum(sizes) if kind is Mounted else max(sizes, default=0))
 
 
-def sizes_kB(needed, count):
-    """No space, and sizes from one page to a tenth more than is needed, each the same factor larger than the one before.
-    There are fewer than `count` where these are too near each other."""
+def size_kB(needed, number, count):
+    """One of `count` sizes: no space, and sizes from one page to a tenth more than is needed, each the same factor larger
+    than the one before."""
+    if number == 0:
+        return 0
     last = max(1.1 * needed / PAGE_KB, 2)
-    return sorted({0} | {PAGE_KB * round(last ** (k / (count - 2))) for k in range(count - 1)})
+    return PAGE_KB * round(last ** ((number - 1) / (count - 2)))

@@ -5,6 +5,14 @@ import json
 import math
 import struct
 
+TETS = """1 2 3 7
+1 3 4 7
+1 4 8 7
+1 8 5 7
+1 5 6 7
+1 6 2 7"""
+CORNERS = [(x, y, z) for z in (0, 40) for x, y in ((0, 0), (40, 0), (40, 40), (0, 40))]
+
 
 def ellipse(z, a, b, points=24):
     """A closed polygon in the plane z [mm], inscribed in an ellipse with half axes a and b [mm]."""
@@ -98,3 +106,27 @@ def stl_surface(path):
         lines += ["vertex {} {} {}".format(*p[k]) for k in triangle]
         lines += ["endloop", "endfacet"]
     path.write_text("\n".join(lines + ["endsolid corner", ""]))
+
+
+def vtk(arrays):
+    """A legacy VTK file of six tetrahedra with these cell arrays: name to values."""
+    tets = "\n".join("4 " + " ".join(str(int(n) - 1) for n in tet.split()) for tet in TETS.splitlines())
+    text = ("# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 double\n" +
+            "\n".join(f"{x} {y} {z}" for x, y, z in CORNERS) + f"\nCELLS 6 30\n{tets}\nCELL_TYPES 6\n10 10 10 10 10 10\n"
+            f"CELL_DATA 6\nFIELD FieldData {len(arrays)}\n")
+    return text + "".join(f"{name} 1 6 int\n{values}\n" for name, values in arrays.items())
+
+
+def glb(name):
+    points = struct.pack("<9f", 0, 0, 0, 0.1, 0, 0, 0, 0.1, 0) + struct.pack("<3I", 0, 1, 2)
+    scene = json.dumps({
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"name": name, "mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "buffers": [{"byteLength": len(points)}],
+        "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 12}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0],
+                       "max": [0.1, 0.1, 0]}, {"bufferView": 1, "componentType": 5125, "count": 3, "type": "SCALAR"}]
+    }).encode()
+    scene += b" " * (-len(scene) % 4)
+    return (b"glTF" + struct.pack("<II", 2, 28 + len(scene) + len(points)) + struct.pack("<I", len(scene)) + b"JSON" +
+            scene + struct.pack("<I", len(points)) + b"BIN\0" + points)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Commands whose results do not fit on the disk end with exit status 1 and one line, and leave nothing that looks finished.
-scripts/campaign_disk does the same with more commands and sizes."""
+The part disk of scripts/campaign does the same with more commands and sizes."""
 import os
 import subprocess
 import unittest

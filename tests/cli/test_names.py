@@ -11,30 +11,12 @@ import unittest
 
 import samples
 from program import HANGS_AFTER_S, STYLET, InFolder
+from words import FOREIGN, harmful
 
 ESCAPE = "\x1b]0;title\x07\x1b[31mred\x7f\u009b2J\r\u202eder\u2066\u200f\u061c\u2028"
 JSON_ESCAPE = json.dumps(ESCAPE)[1:-1]
 
-TETS = """1 2 3 7
-1 3 4 7
-1 4 8 7
-1 8 5 7
-1 5 6 7
-1 6 2 7"""
-CORNERS = [(x, y, z) for z in (0, 40) for x, y in ((0, 0), (40, 0), (40, 40), (0, 40))]
-
-# Words of libraries that read files and of the C++ runtime.
-FOREIGN = ("json.exception", "[json", "parse_error", "type_error", "while parsing", "saw '", "H5", "unable to",
-           "HDF5 gave", "vtk", ".cxx", "ERROR:", "No data to", "Error reading", "std::", "bad_alloc", "basic_string",
-           "what()", "terminate", "core dumped", "Segmentation", "Aborted", "last words", "Dcm", "OFCondition",
-           "escaped_list", "boost", "exception", "error_code", "invalid escape", "Invalid stream", "I/O suspension")
 QUOTED = re.compile(r"(?<![^ (\[{=,:\n])(['\"])((?:(?!\1[ )\]},.:;\n]).)*)\1")
-
-
-def is_harmful(c):
-    """Whether a character steers a terminal, ends a line or turns the direction of writing."""
-    return ((c < " " and c not in "\n\t") or "\x7f" <= c < "\xa0" or c in "\u061c\u200e\u200f" or
-            "\u2028" <= c <= "\u202e" or "\u2066" <= c <= "\u2069")
 
 
 def texts_of(value):
@@ -46,37 +28,13 @@ def texts_of(value):
     return [value] if isinstance(value, str) else []
 
 
-def vtk(arrays):
-    """A legacy VTK file of six tetrahedra with these cell arrays: name to values."""
-    tets = "\n".join("4 " + " ".join(str(int(n) - 1) for n in tet.split()) for tet in TETS.splitlines())
-    text = ("# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 double\n" +
-            "\n".join(f"{x} {y} {z}" for x, y, z in CORNERS) + f"\nCELLS 6 30\n{tets}\nCELL_TYPES 6\n10 10 10 10 10 10\n"
-            f"CELL_DATA 6\nFIELD FieldData {len(arrays)}\n")
-    return text + "".join(f"{name} 1 6 int\n{values}\n" for name, values in arrays.items())
-
-
-def glb(name):
-    points = struct.pack("<9f", 0, 0, 0, 0.1, 0, 0, 0, 0.1, 0) + struct.pack("<3I", 0, 1, 2)
-    scene = json.dumps({
-        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"name": name, "mesh": 0}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
-        "buffers": [{"byteLength": len(points)}],
-        "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 12}],
-        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0],
-                       "max": [0.1, 0.1, 0]}, {"bufferView": 1, "componentType": 5125, "count": 3, "type": "SCALAR"}]
-    }).encode()
-    scene += b" " * (-len(scene) % 4)
-    return (b"glTF" + struct.pack("<II", 2, 28 + len(scene) + len(points)) + struct.pack("<I", len(scene)) + b"JSON" +
-            scene + struct.pack("<I", len(points)) + b"BIN\0" + points)
-
-
 class Clean(InFolder):
     def check(self, *arguments, status=None):
         """Runs the program and checks that its output has no control characters. Returns the output."""
         done = subprocess.run([STYLET, *arguments], cwd=self.folder, capture_output=True, check=False,
                               timeout=HANGS_AFTER_S, stdin=subprocess.DEVNULL)
         text = (done.stdout + done.stderr).decode()
-        self.assertEqual([c for c in text if is_harmful(c)], [], f"{arguments}: {text!r}")
+        self.assertEqual(harmful(text), [], f"{arguments}: {text!r}")
         said = done.stderr.decode()
         for argument in arguments:
             said = said.replace(str(argument), "…")
@@ -86,7 +44,7 @@ class Clean(InFolder):
         self.assertIn(done.returncode, (0, 1, 2), f"{arguments}: {text!r}")
         if "-" in arguments and done.returncode == 0:
             for part in texts_of(json.loads(done.stdout)):
-                self.assertEqual([c for c in part if is_harmful(c)], [], f"{arguments}: {part!r}")
+                self.assertEqual(harmful(part), [], f"{arguments}: {part!r}")
         if status is not None:
             self.assertEqual(done.returncode, status, text)
         return text
@@ -95,13 +53,13 @@ class Clean(InFolder):
 class Names(Clean):
     def test_of_no_format_bring_control_characters_to_the_terminal(self):
         gland = {**samples.ball(15), "name": ESCAPE}
-        for file in (self.write("c.json", samples.structure_set(gland, label=ESCAPE)), self.write("s.glb", glb(ESCAPE))):
+        for file in (self.write("c.json", samples.structure_set(gland, label=ESCAPE)), self.write("s.glb", samples.glb(ESCAPE))):
             text = self.check("info", file, status=0)
             self.assertIn("red", text, file)
             self.check("info", file, "--json", "-", status=0)
             self.check("info", file, "--scenario", status=None)
             self.check("mesh", file, "-o", "out.vtu", "--region", "nothing=prostate", status=2)
-        file = self.write("m.vtk", vtk({"a\x1b[31m": "1 1 1 2 2 2", "b\x07": "1 1 3 3 3 3"}))
+        file = self.write("m.vtk", samples.vtk({"a\x1b[31m": "1 1 1 2 2 2", "b\x07": "1 1 3 3 3 3"}))
         self.assertIn("a [31m", self.check("info", file, status=0))
         self.check("info", file, "--regions-from", "c", status=2)
 
@@ -200,7 +158,7 @@ class Damage(Clean):
 class Regions(InFolder):
     def setUp(self):
         super().setUp()
-        self.write("m.vtk", vtk({"tissue": "1 1 1 2 2 2", "part": "1 1 3 3 3 3"}))
+        self.write("m.vtk", samples.vtk({"tissue": "1 1 1 2 2 2", "part": "1 1 3 3 3 3"}))
 
     def test_of_several_arrays_are_listed_with_the_option_and_the_key_that_choose(self):
         info = self.json_of("info", "m.vtk")
