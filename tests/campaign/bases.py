@@ -45,11 +45,13 @@ SEEDS = """\
 hole,retraction_mm,train
 D4,5,S-1-S
 """
-SOURCE = {"format": "stylet-source", "version": 1, "name": "mine", "title": "My seed", "isotope": "I-125", "citation": "a paper",
+SOURCE = {"format": "stylet-source", "version": 1, "name": "mine", "title": "My seed", "isotope": "I-125",
+          "citation": "a paper",
           "half_life_days": 59.4, "dose_rate_constant": 0.965, "active_length_mm": 3.0, "outer_length_mm": 4.5,
           "outer_diameter_mm": 0.8, "g": {"r_mm": [1, 5, 10, 50], "g_L": [1.055, 1.071, 1.0, 0.364]},
           "F": {"r_mm": [5, 10, 50], "theta_deg": [0, 30, 90],
                 "values": [[None, 0.37, 0.55], [0.846, 0.834, 0.852], [1, 1, 1]]}}
+PLAN_CSV = "# strength_U: 0.5\n# source: i125_6711\nx_mm,y_mm,z_mm,ax,ay,az\n0,0,0,0,0,1\n5,0,0,0,0,1\n"
 FOUND = "x_mm,y_mm,z_mm,ax,ay,az\n31,32,35,0,0,1\n31.5,32,25,0,0.1,1\n"
 POINTS = "x_mm,y_mm,z_mm\n0,0,0\n10,0,0\n0,5,20\n"
 GOALS = "structure,metric,bound,citation\nprostate,D90_percent,>=100,ours\nrectum,D0.1cc_Gy,<200,ours\n"
@@ -58,8 +60,8 @@ DOSE = ("--step", "3", "--grid", "6")
 
 @dataclass
 class Base:
-    """A sound file: its name, its mutator, and the commands that read it with how often each is taken. "FILE" stands for
-    the mutant; files beside it have the names that commands and files say."""
+    """A sound file: its name, its mutator, and the commands that read it with how often each is taken. "FILE" stands
+    for the mutant; files beside it have the names that commands and files say."""
     name: str
     mutate: object
     commands: list
@@ -67,7 +69,8 @@ class Base:
 
 def voxels(size=(12, 12, 8)):
     inside = lambda i, j, k: 2 < i < 9 and 2 < j < 9 and 1 < k < 6
-    return bytes((1 + (i > 5)) * inside(i, j, k) for k in range(size[2]) for j in range(size[1]) for i in range(size[0]))
+    return bytes((1 + (i > 5)) * inside(i, j, k) for k in range(size[2]) for j in range(size[1])
+                 for i in range(size[0]))
 
 
 def nrrd():
@@ -77,7 +80,8 @@ def nrrd():
 
 
 def metaimage():
-    return (b"ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nCompressedData = False\n"
+    return (b"ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
+            b"CompressedData = False\n"
             b"TransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = 0 0 0\nElementSpacing = 3 3 5\nDimSize = 12 12 8\n"
             b"ElementType = MET_UCHAR\nElementDataFile = LOCAL\n" + voxels())
 
@@ -98,22 +102,29 @@ def segmentation(path):
     file = FileDataset(str(path), {}, file_meta=meta, preamble=bytes(128))
     file.is_little_endian, file.is_implicit_VR = True, False
     for name, value in {
-            "SOPClassUID": meta.MediaStorageSOPClassUID, "SOPInstanceUID": meta.MediaStorageSOPInstanceUID, "Modality": "SEG",
-            "PatientName": "Test", "PatientID": "1", "StudyInstanceUID": generate_uid(), "SeriesInstanceUID": generate_uid(),
-            "FrameOfReferenceUID": generate_uid(), "InstanceNumber": 1, "ContentLabel": "SEG", "NumberOfFrames": 8, "Rows": 12,
-            "Columns": 12, "BitsAllocated": 1, "BitsStored": 1, "HighBit": 0, "SamplesPerPixel": 1, "PixelRepresentation": 0,
-            "PhotometricInterpretation": "MONOCHROME2", "SegmentationType": "BINARY", "LossyImageCompression": "00"}.items():
+            "SOPClassUID": meta.MediaStorageSOPClassUID, "SOPInstanceUID": meta.MediaStorageSOPInstanceUID,
+                        "Modality": "SEG",
+            "PatientName": "Test", "PatientID": "1", "StudyInstanceUID": generate_uid(),
+                        "SeriesInstanceUID": generate_uid(),
+            "FrameOfReferenceUID": generate_uid(), "InstanceNumber": 1, "ContentLabel": "SEG", "NumberOfFrames": 8,
+                        "Rows": 12,
+            "Columns": 12, "BitsAllocated": 1, "BitsStored": 1, "HighBit": 0, "SamplesPerPixel": 1,
+                        "PixelRepresentation": 0,
+            "PhotometricInterpretation": "MONOCHROME2", "SegmentationType": "BINARY",
+                        "LossyImageCompression": "00"}.items():
         setattr(file, name, value)
     code = {"CodeValue": "41216001", "CodingSchemeDesignator": "SCT", "CodeMeaning": "Prostate"}
     file.SegmentSequence = [item(SegmentNumber=1, SegmentLabel="Prostate", SegmentAlgorithmType="MANUAL",
-                                 SegmentedPropertyCategoryCodeSequence=[item(**code)], SegmentedPropertyTypeCodeSequence=[item(**code)])]
+                                 SegmentedPropertyCategoryCodeSequence=[item(**code)],
+                                 SegmentedPropertyTypeCodeSequence=[item(**code)])]
     file.SharedFunctionalGroupsSequence = [item(
         PixelMeasuresSequence=[item(PixelSpacing=[3, 3], SliceThickness=5, SpacingBetweenSlices=5)],
         PlaneOrientationSequence=[item(ImageOrientationPatient=[1, 0, 0, 0, 1, 0])],
         SegmentIdentificationSequence=[item(ReferencedSegmentNumber=1)])]
     file.PerFrameFunctionalGroupsSequence = [item(
         PlanePositionSequence=[item(ImagePositionPatient=[0, 0, 5 * k])],
-        FrameContentSequence=[item(StackID="1", InStackPositionNumber=k + 1, DimensionIndexValues=[1, k + 1])]) for k in range(8)]
+        FrameContentSequence=[item(StackID="1", InStackPositionNumber=k + 1, DimensionIndexValues=[1, k + 1])])
+                                             for k in range(8)]
     bits = [min(value, 1) for value in voxels()]
     file.PixelData = bytes(sum(bits[k + n] << n for n in range(8)) for k in range(0, len(bits), 8))
     file["PixelData"].VR = "OB"
@@ -133,12 +144,14 @@ def binary_stl():
     corners = [(0, 0, 0), (30, 0, 0), (0, 30, 0), (0, 0, 30)]
     triangles = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
     return bytes(80) + struct.pack("<I", 4) + b"".join(
-        struct.pack("<12fH", 0, 0, 0, *(x for corner in triangle for x in corners[corner]), 0) for triangle in triangles)
+        struct.pack("<12fH", 0, 0, 0, *(x for corner in triangle for x in corners[corner]), 0)
+                                                       for triangle in triangles)
 
 
 TETRAHEDRON = ("v 0 0 0\nv 30 0 0\nv 0 30 0\nv 0 0 30\n", "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n")
 PLY = ("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 4\n"
-       "property list uchar int vertex_indices\nend_header\n0 0 0\n30 0 0\n0 30 0\n0 0 30\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n")
+       "property list uchar int vertex_indices\nend_header\n0 0 0\n30 0 0\n0 30 0\n0 0 30\n"
+       "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n")
 
 
 def done(arguments, folder):
@@ -151,11 +164,14 @@ def write(folder):
     """Writes all files into a folder."""
     folder = Path(folder)
     block_mesh(folder / "block.msh")
-    texts = {"block.toml": BLOCK, "implant.toml": IMPLANT, "seeds.csv": SEEDS, "source.json": json.dumps(SOURCE), "found.csv": FOUND,
-             "points.csv": POINTS, "goals.csv": GOALS, "plan.json": json.dumps(full_disk.PLAN), "surface.obj": "".join(TETRAHEDRON),
+    texts = {"block.toml": BLOCK, "implant.toml": IMPLANT, "seeds.csv": SEEDS, "source.json": json.dumps(SOURCE),
+             "found.csv": FOUND,
+             "points.csv": POINTS, "goals.csv": GOALS, "plan.json": json.dumps(full_disk.PLAN),
+             "surface.obj": "".join(TETRAHEDRON),
              "surface.ply": PLY, "structures.json": json.dumps(samples.structure_set(samples.ball(14, gap=5.0))),
-             "mesh.vtk": samples.vtk({"tissue": "1 1 1 2 2 2", "part": "1 1 3 3 3 3"}), "motion.toml": BLOCK.split("entry_mm")[0] +
-             'motion = "motion.csv"\n', "plan.csv": "# strength_U: 0.5\n# source: i125_6711\nx_mm,y_mm,z_mm,ax,ay,az\n0,0,0,0,0,1\n5,0,0,0,0,1\n"}
+             "mesh.vtk": samples.vtk({"tissue": "1 1 1 2 2 2", "part": "1 1 3 3 3 3"}),
+             "motion.toml": BLOCK.split("entry_mm")[0] +
+             'motion = "motion.csv"\n', "plan.csv": PLAN_CSV}
     texts["motion.csv"] = "time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz\n" + "".join(
         f"{0.05 * k:.2f},31,32,{-120 + 5 * min(k, 16 - k)},1,0,0,0\n" for k in range(17))
     for name, content in texts.items():
@@ -199,20 +215,25 @@ def bases(blocks):
     dose = ("dose", "plan.json", "--structures", "structures.json", "-o", "out", *DOSE)
     plan = [(2, info), (3, ("dose", "FILE", "--source", "i125_6711", "-o", "out", *DOSE))]
     insert = ("insert", "FILE", "-o", "out", *QUICK)
-    replay = [(6, info), (3, ("insert", "FILE", "-o", "out")), (2, ("image", "FILE", "-o", "out.png")), (1, ("serve", "FILE"))]
+    replay = [(6, info), (3, ("insert", "FILE", "-o", "out")), (2, ("image", "FILE", "-o", "out.png")),
+              (1, ("serve", "FILE"))]
     return [
         Base("rtstruct.dcm", mutators.dicom, patient), Base("seg.dcm", mutators.dicom, patient),
-        Base("rtplan.dcm", mutators.dicom, [*plan, (1, ("dose", "plan.json", "--patient-from", "FILE", "-o", "out", *DOSE)),
+        Base("rtplan.dcm", mutators.dicom,
+             [*plan, (1, ("dose", "plan.json", "--patient-from", "FILE", "-o", "out", *DOSE)),
                                             (1, ("implant", "implant.toml", "--found", "FILE", "-o", "out"))]),
         Base("rtdose.dcm", mutators.dicom, [(2, info), (2, (*dose, "--compare", "FILE"))]),
         Base("gland.json", mutators.tree, patient), Base("structures.json", mutators.tree, [
             (2, info), (2, ("dose", "plan.json", "--structures", "FILE", "-o", "out", *DOSE))]),
         Base("mask.nii", mutators.raw, patient), Base("mask.nii.gz", mutators.zipped(mutators.raw), patient),
         Base("mask.nrrd", mutators.text, patient), Base("mask.mha", mutators.text, patient),
-        Base("mesh.vtk", mutators.text, surface), Base("mesh.vtu", mutators.text, surface), Base("two.msh", mutators.text, surface),
-        Base("text.stl", mutators.text, surface), Base("binary.stl", mutators.raw, surface), Base("surface.ply", mutators.text, surface),
+        Base("mesh.vtk", mutators.text, surface), Base("mesh.vtu", mutators.text, surface),
+            Base("two.msh", mutators.text, surface),
+        Base("text.stl", mutators.text, surface), Base("binary.stl", mutators.raw, surface),
+            Base("surface.ply", mutators.text, surface),
         Base("surface.obj", mutators.text, surface), Base("surface.glb", mutators.raw, surface),
-        Base("block.toml", mutators.text, [(6, insert), (2, ("prepare", "FILE", "-o", "out.stylet")), (1, ("serve", "FILE"))]),
+        Base("block.toml", mutators.text,
+             [(6, insert), (2, ("prepare", "FILE", "-o", "out.stylet")), (1, ("serve", "FILE"))]),
         Base("implant.toml", mutators.text, [(1, ("implant", "FILE", "-o", "out"))]),
         Base("motion.csv", mutators.text, [(1, ("insert", "motion.toml", "-o", "out", *QUICK))]),
         Base("seeds.csv", mutators.text, [*plan, (2, ("implant", "implant.toml", "-o", "out"))]),
@@ -220,7 +241,8 @@ def bases(blocks):
         Base("points.csv", mutators.text, [(1, (*dose, "--points", "FILE"))]),
         Base("goals.csv", mutators.text, [(1, (*dose, "--goals", "FILE"))]),
         Base("found.csv", mutators.text, [(1, ("implant", "implant.toml", "--found", "FILE", "-o", "out"))]),
-        Base("source.json", mutators.tree, [(2, info), (2, ("dose", "plan.csv", "--source", "FILE", "-o", "out", *DOSE))]),
+        Base("source.json", mutators.tree,
+             [(2, info), (2, ("dose", "plan.csv", "--source", "FILE", "-o", "out", *DOSE))]),
         Base("block.stylet", mutators.model(blocks("block.stylet")), [(3, info), (4, insert), (1, ("serve", "FILE"))]),
         Base("run.h5", mutators.hdf5(blocks("run.h5")), replay),
         Base("implant.h5", mutators.hdf5(blocks("implant.h5")), [(6, info), (1, ("serve", "FILE"))]),

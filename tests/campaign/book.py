@@ -44,7 +44,7 @@ def read(path):
 
 def summary(folder):
     """The Markdown table of all parts that the folder has, and a list of the faults."""
-    lines = ["| part | attempts | exits | ended by a signal | longest [s] | most memory [MB] | bad words | with a fault |",
+    lines = ["| part | attempts | exits | signals | longest [s] | most memory [MB] | bad words | with a fault |",
              "|---|---|---|---|---|---|---|---|"]
     kinds, faulty = [], []
     for path in sorted(folder.glob("*.csv")):

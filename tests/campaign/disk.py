@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every command with its results on small file systems of many sizes. It ends with exit status 0, or with 1 and one line;
-it leaves no hidden file, and nothing that looks finished unless it is."""
+"""Every command with its results on small file systems of many sizes. It ends with exit status 0, or with 1 and one
+line; it leaves no hidden file, and nothing that looks finished unless it is."""
 import resource
 
 import full_disk

@@ -57,7 +57,8 @@ def shell(arguments, environment=None):
 
 
 def start(arguments, folder, out, err, environment=None):
-    return subprocess.Popen([STYLET, *map(str, arguments)], cwd=folder, stdin=subprocess.DEVNULL, stdout=out, stderr=err,
+    return subprocess.Popen([STYLET, *map(str, arguments)], cwd=folder, stdin=subprocess.DEVNULL, stdout=out,
+                            stderr=err,
                             env={**os.environ, **(environment or {})}, start_new_session=True)
 
 

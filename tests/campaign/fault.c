@@ -66,50 +66,56 @@ int __libc_start_main(Main* main, int count, char** words, void (*begin)(void), 
   return real(counted_main, count, words, begin, end, last, stack);
 }
 
-/* Defines a function that fails in its turn and is the real one otherwise. */
-#define WRAPPED(call, failure, type, name, parameters, arguments) \
-  type name parameters {                                          \
-    static type(*real) parameters;                                \
-    if (real == NULL) real = dlsym(RTLD_NEXT, #name);             \
-    if (fails(call)) return failure;                              \
-    return real arguments;                                        \
+/* Defines a function that fails in its turn and is the real one otherwise. Standard error never fails, since errors are
+   said there. */
+#define WRAPPED(is_failing, failure, type, name, parameters, arguments) \
+  type name parameters {                                                \
+    static type(*real) parameters;                                      \
+    if (real == NULL) real = dlsym(RTLD_NEXT, #name);                   \
+    if (is_failing) return failure;                                     \
+    return real arguments;                                              \
   }
 
-WRAPPED(WRITE, -1, ssize_t, write, (int file, const void* data, size_t size), (file, data, size))
-WRAPPED(WRITE, -1, ssize_t, pwrite, (int file, const void* data, size_t size, off_t at), (file, data, size, at))
-WRAPPED(WRITE, -1, ssize_t, pwrite64, (int file, const void* data, size_t size, off64_t at), (file, data, size, at))
-WRAPPED(WRITE, -1, ssize_t, writev, (int file, const struct iovec* parts, int count), (file, parts, count))
-WRAPPED(WRITE, 0, size_t, fwrite, (const void* data, size_t size, size_t count, FILE* file), (data, size, count, file))
-WRAPPED(WRITE, -1, int, ftruncate, (int file, off_t size), (file, size))
-WRAPPED(WRITE, -1, int, ftruncate64, (int file, off64_t size), (file, size))
-WRAPPED(OPEN, NULL, FILE*, fopen, (const char* path, const char* mode), (path, mode))
-WRAPPED(OPEN, NULL, FILE*, fopen64, (const char* path, const char* mode), (path, mode))
-WRAPPED(RENAME, -1, int, rename, (const char* from, const char* to), (from, to))
-WRAPPED(RENAME, -1, int, renameat2, (int a, const char* from, int b, const char* to, unsigned flags), (a, from, b, to, flags))
-WRAPPED(SYNC, -1, int, fsync, (int file), (file))
-WRAPPED(SYNC, -1, int, fdatasync, (int file), (file))
-WRAPPED(FORK, -1, pid_t, fork, (void), ())
-WRAPPED(FORK, -1, pid_t, vfork, (void), ())
-WRAPPED(FORK, error, int, posix_spawn,
+WRAPPED(file != STDERR_FILENO && fails(WRITE), -1, ssize_t, write, (int file, const void* data, size_t size),
+        (file, data, size))
+WRAPPED(fails(WRITE), -1, ssize_t, pwrite, (int file, const void* data, size_t size, off_t at), (file, data, size, at))
+WRAPPED(fails(WRITE), -1, ssize_t, pwrite64, (int file, const void* data, size_t size, off64_t at),
+        (file, data, size, at))
+WRAPPED(file != STDERR_FILENO && fails(WRITE), -1, ssize_t, writev, (int file, const struct iovec* parts, int count),
+        (file, parts, count))
+WRAPPED(file != stderr && fails(WRITE), 0, size_t, fwrite, (const void* data, size_t size, size_t count, FILE* file),
+        (data, size, count, file))
+WRAPPED(fails(WRITE), -1, int, ftruncate, (int file, off_t size), (file, size))
+WRAPPED(fails(WRITE), -1, int, ftruncate64, (int file, off64_t size), (file, size))
+WRAPPED(fails(OPEN), NULL, FILE*, fopen, (const char* path, const char* mode), (path, mode))
+WRAPPED(fails(OPEN), NULL, FILE*, fopen64, (const char* path, const char* mode), (path, mode))
+WRAPPED(fails(RENAME), -1, int, rename, (const char* from, const char* to), (from, to))
+WRAPPED(fails(RENAME), -1, int, renameat2, (int a, const char* from, int b, const char* to, unsigned flags),
+        (a, from, b, to, flags))
+WRAPPED(fails(SYNC), -1, int, fsync, (int file), (file))
+WRAPPED(fails(SYNC), -1, int, fdatasync, (int file), (file))
+WRAPPED(fails(FORK), -1, pid_t, fork, (void), ())
+WRAPPED(fails(FORK), -1, pid_t, vfork, (void), ())
+WRAPPED(fails(FORK), error, int, posix_spawn,
         (pid_t * pid, const char* path, const posix_spawn_file_actions_t* actions, const posix_spawnattr_t* attributes,
          char* const words[], char* const environment[]),
         (pid, path, actions, attributes, words, environment))
-WRAPPED(MMAP, MAP_FAILED, void*, mmap, (void* at, size_t size, int rights, int flags, int file, off_t from),
+WRAPPED(fails(MMAP), MAP_FAILED, void*, mmap, (void* at, size_t size, int rights, int flags, int file, off_t from),
         (at, size, rights, flags, file, from))
-WRAPPED(MMAP, MAP_FAILED, void*, mmap64, (void* at, size_t size, int rights, int flags, int file, off64_t from),
+WRAPPED(fails(MMAP), MAP_FAILED, void*, mmap64, (void* at, size_t size, int rights, int flags, int file, off64_t from),
         (at, size, rights, flags, file, from))
 
 /* The mode is there only where a file may be created. */
-#define OPENED(name, parameters, arguments)                     \
-  int name parameters {                                         \
-    static int(*real) parameters;                               \
-    if (real == NULL) real = dlsym(RTLD_NEXT, #name);           \
-    va_list more;                                               \
-    va_start(more, flags);                                      \
+#define OPENED(name, parameters, arguments)                           \
+  int name parameters {                                               \
+    static int(*real) parameters;                                     \
+    if (real == NULL) real = dlsym(RTLD_NEXT, #name);                 \
+    va_list more;                                                     \
+    va_start(more, flags);                                            \
     const mode_t mode = (flags & O_CREAT) ? va_arg(more, mode_t) : 0; \
-    va_end(more);                                               \
-    if (fails(OPEN)) return -1;                                 \
-    return real arguments;                                      \
+    va_end(more);                                                     \
+    if (fails(OPEN)) return -1;                                       \
+    return real arguments;                                            \
   }
 
 OPENED(open, (const char* path, int flags, ...), (path, flags, mode))

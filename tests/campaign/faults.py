@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Calls of the system that fail: the n-th write, open, rename, fsync, fork, mmap or malloc of a command. It ends with 0, 1
-or 2 and at most one line of error, and nothing looks complete that is not."""
+"""Calls of the system that fail: the n-th write, open, rename, fsync, fork, mmap or malloc of a command. It ends with
+0, 1 or 2 and at most one line of error, and nothing looks complete that is not."""
 import errno
 import math
 import subprocess
@@ -11,8 +11,10 @@ import bases
 from ending import Attempt, faults_of, files_under, hidden_under, run, shell
 from part import AnyPart
 
-CALLS = {"write": (errno.ENOSPC, errno.EIO), "open": (errno.EMFILE, errno.EACCES, errno.ENOSPC), "rename": (errno.ENOSPC, errno.EIO),
-         "sync": (errno.EIO, errno.ENOSPC), "fork": (errno.EAGAIN, errno.ENOMEM), "mmap": (errno.ENOMEM,), "malloc": (errno.ENOMEM,)}
+CALLS = {"write": (errno.ENOSPC, errno.EIO), "open": (errno.EMFILE, errno.EACCES, errno.ENOSPC),
+         "rename": (errno.ENOSPC, errno.EIO),
+         "sync": (errno.EIO, errno.ENOSPC), "fork": (errno.EAGAIN, errno.ENOMEM), "mmap": (errno.ENOMEM,),
+         "malloc": (errno.ENOMEM,)}
 # Each command, and the file without which nothing looks finished.
 COMMANDS = {
     "info": (("info", "rtstruct.dcm", "--json", "out.json"), "out.json"),
@@ -22,7 +24,8 @@ COMMANDS = {
     "insert": (("insert", "block.toml", "-o", "out", *bases.QUICK), "out/summary.json"),
     "insert_saved": (("insert", "block.stylet", "-o", "out", *bases.QUICK), "out/summary.json"),
     "insert_again": (("insert", "run.h5", "-o", "out"), "out/summary.json"),
-    "dose": (("dose", "rtplan.dcm", "--source", "i125_6711", "--structures", "structures.json", "-o", "out", *bases.DOSE), "out/dose.json"),
+    "dose": (("dose", "rtplan.dcm", "--source", "i125_6711", "--structures", "structures.json", "-o", "out",
+              *bases.DOSE), "out/dose.json"),
     "implant": (("implant", "implant.toml", "-o", "out"), "out/summary.json"),
     "phantom": (("phantom", "-o", "out"), "out/phantom.json"),
 }
@@ -35,7 +38,8 @@ class Part(AnyPart):
         super().__init__(folder)
         self.library = folder / "fault.so"
         if not self.library.exists():
-            subprocess.run(["cc", "-O1", "-shared", "-fPIC", "-o", self.library, Path(__file__).with_name("fault.c"), "-ldl"], check=True)
+            subprocess.run(["cc", "-O1", "-shared", "-fPIC", "-o", self.library, Path(__file__).with_name("fault.c"),
+                            "-ldl"], check=True)
 
     def calls(self, name, call, folder):
         """How often a command makes a call, or one of the program that reads files for it."""
@@ -64,4 +68,5 @@ class Part(AnyPart):
         if hidden := hidden_under(folder):
             faults.append(f"left {hidden}")
         what = f"{name}, call {nth} of {calls}, {errno.errorcode[int(settings['FAULT_ERRNO'])]}"
-        return Attempt(call, what + ", and all later ones" * ("FAULT_EVER" in settings), shell(command, settings), end, faults)
+        return Attempt(call, what + ", and all later ones" * ("FAULT_EVER" in settings), shell(command, settings), end,
+                       faults)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Random hands: a needle is moved for tens of seconds in all directions, gently and madly. All results are finite, needle and
-tissue are in balance, and the same motion gives the same results. A motion that fails is shrunk."""
+"""Random hands: a needle is moved for tens of seconds in all directions, gently and madly. All results are finite,
+needle and tissue are in balance, and the same motion gives the same results. A motion that fails is shrunk."""
 import csv
 import json
 import math
@@ -38,14 +38,15 @@ frames_per_s = 1
 
 
 def random_pieces(random):
-    """A motion: pieces of (duration [s], depth [mm], x, y [mm], tilt about x and y [deg], roll [deg]), each of which ends there."""
+    """A motion: pieces of (duration [s], depth [mm], x, y [mm], tilt about x and y, roll [deg]); each ends there."""
     madness = random.choice((0.2, 1.0, 1.0, 3.0))
     pieces, left = [], SECONDS
     while left > 0:
         seconds = min(left, random.choice((0.02, 0.1, 0.5, 1.0, 2.0)) * random.uniform(0.5, 1.5))
         left -= seconds
         pieces.append((seconds, random.choice((random.uniform(-10, 50), random.uniform(10, 45), 40.0)),
-                       *(madness * random.gauss(0, 1.5) for _ in range(2)), *(madness * random.gauss(0, 1.0) for _ in range(2)),
+                       *(madness * random.gauss(0, 1.5) for _ in range(2)),
+                       *(madness * random.gauss(0, 1.0) for _ in range(2)),
                        random.choice((0.0, random.uniform(-180, 180)))))
     return pieces
 
@@ -88,7 +89,8 @@ class Part(AnyPart):
 
     def attempt(self, number, random, folder):
         (folder / "block.msh").hardlink_to(self.folder / "block.msh")
-        scenario = SCENARIO.format(preset=random.choice(("typical", "typical", "linear", "soft")), model=random.choice(("beam", "beam", "springs")),
+        scenario = SCENARIO.format(preset=random.choice(("typical", "typical", "linear", "soft")),
+                                   model=random.choice(("beam", "beam", "springs")),
                                    bevel=random.choice((0, 20)), guide=random.choice(("false", "true")))
         pieces = random_pieces(random)
         end, faults = self.moved(folder, pieces, scenario)
@@ -99,7 +101,8 @@ class Part(AnyPart):
         elif faults:
             pieces = self.shrunk(folder, pieces, scenario, faults)
             self.moved(folder, pieces, scenario)
-        return Attempt("motion", f"{len(pieces)} pieces, {sum(piece[0] for piece in pieces):.2f} s", shell(("insert", "case.toml", "-o", "out")),
+        return Attempt("motion", f"{len(pieces)} pieces, {sum(piece[0] for piece in pieces):.2f} s",
+                       shell(("insert", "case.toml", "-o", "out")),
                        end, faults)
 
     def shrunk(self, folder, pieces, scenario, faults):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Hostile HTTP, WebSocket and OpenIGTLink against a server whose needle moves: it goes on, the needle's steps go on, and the
-server's memory stays bounded."""
+"""Hostile HTTP, WebSocket and OpenIGTLink against a server whose needle moves: it goes on, the needle's steps go on,
+and the server's memory stays bounded."""
 import base64
 import json
 import os
@@ -53,7 +53,8 @@ class Attacks:
         """A WebSocket connection."""
         connection = connected(self.port)
         key = base64.b64encode(os.urandom(16)).decode()
-        connection.sendall(self.request("/live", "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+        connection.sendall(self.request("/live",
+                                        "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
                                         f"Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Protocol: stylet-live-3\r\n"))
         return connection
 
@@ -62,9 +63,11 @@ class Attacks:
             sent(c, random.randbytes(random.choice((1, 100, 100000))))
 
     def http_mutants(self, random):
-        paths = ("/", "/live", "/live.js", "/recordings", "/recordings/x/forces.csv", "/recordings/%2e%2e/%00", "/recordings/" + "../" * 20)
+        paths = ("/", "/live", "/live.js", "/recordings", "/recordings/x/forces.csv", "/recordings/%2e%2e/%00",
+                 "/recordings/" + "../" * 20)
         with connected(self.port) as c:
-            sent(c, mutators.text(self.request(random.choice(paths), "Range: bytes=0-1\r\nContent-Length: 10\r\n"), random))
+            sent(c, mutators.text(self.request(random.choice(paths), "Range: bytes=0-1\r\nContent-Length: 10\r\n"),
+                                  random))
 
     def http_long(self, random):
         with connected(self.port) as c:
@@ -101,16 +104,20 @@ class Attacks:
 
     def ws_frames(self, random):
         with self.upgraded() as c:
-            what = [struct.pack(">BBQ", 0x82, 0xff, random.choice(mutators.INTEGERS) & 0x7fffffffffffffff) + b"abcd" * 3,
-                    b"\x82\x05hello", b"\xf2\x80abcd", b"\x83\x80abcd", b"\x00\x80abcd", b"\x02\x81abcd0" * FLOOD, b"\x89\x80abcd" * FLOOD,
-                    b"\x89\xfe\x01\x00abcd" + bytes(256), b"\x88\x82abcd\0\0", b"\x81\x84abcd\xff\xff\xff\xff", random.randbytes(5000),
+            what = [struct.pack(">BBQ", 0x82, 0xff,
+                                random.choice(mutators.INTEGERS) & 0x7fffffffffffffff) + b"abcd" * 3,
+                    b"\x82\x05hello", b"\xf2\x80abcd", b"\x83\x80abcd", b"\x00\x80abcd", b"\x02\x81abcd0" * FLOOD,
+                    b"\x89\x80abcd" * FLOOD,
+                    b"\x89\xfe\x01\x00abcd" + bytes(256), b"\x88\x82abcd\0\0", b"\x81\x84abcd\xff\xff\xff\xff",
+                    random.randbytes(5000),
                     b"\x02\x81abcd0" + b"\x00\xff" + struct.pack(">Q", 70_000_000) + b"abcd" + bytes(3_000_000)]
             sent(c, random.choice(what))
 
     def ws_messages(self, random):
         with self.upgraded() as c:
             for _ in range(random.choice((1, 30, FLOOD))):
-                body = random.choice((random.randbytes(random.randrange(60)), struct.pack("<II", random.choice((0, 2, 16, 17, 18, 19, 2**32 - 1)), 0) +
+                body = random.choice((random.randbytes(random.randrange(60)),
+                                      struct.pack("<II", random.choice((0, 2, 16, 17, 18, 19, 2**32 - 1)), 0) +
                                       random.randbytes(random.choice((0, 4, 20, 110)))))
                 try:
                     c.sendall(masked(body))
@@ -119,13 +126,18 @@ class Attacks:
             sent(c, b"")
 
     def ws_commands(self, random):
-        commands = [{"do": "take"}, {"do": "hole", "hole": "D4"}, {"do": "insertion", "index": 0}, {"do": "needle", "index": 0}, {"do": "case", "index": 0},
-                    {"do": "predict", "on": 1}, {"do": "step", "count": 5}, {"do": "replay", "name": "x"}, {"do": "seek", "time_s": 1},
-                    {"do": "play", "rate": 1}, {"do": "image", "show": "xray"}, {"do": "set", "key": "probe.lift_mm", "value": 8}]
+        commands = [{"do": "take"}, {"do": "hole", "hole": "D4"}, {"do": "insertion", "index": 0},
+                    {"do": "needle", "index": 0}, {"do": "case", "index": 0},
+                    {"do": "predict", "on": 1}, {"do": "step", "count": 5}, {"do": "replay", "name": "x"},
+                    {"do": "seek", "time_s": 1},
+                    {"do": "play", "rate": 1}, {"do": "image", "show": "xray"},
+                    {"do": "set", "key": "probe.lift_mm", "value": 8}]
         with self.upgraded() as c:
             for _ in range(random.choice((1, 50))):
                 try:
-                    c.sendall(masked(struct.pack("<II", 17, 0) + mutators.tree(json.dumps(random.choice(commands)).encode(), random)[:60000]))
+                    c.sendall(masked(struct.pack("<II", 17,
+                                                 0) + mutators.tree(json.dumps(random.choice(commands)).encode(),
+                                                                    random)[:60000]))
                 except OSError:
                     break
             sent(c, b"")
@@ -144,16 +156,22 @@ class Attacks:
 
     def igtl_contents(self, random):
         """Sound messages with odd contents."""
-        kind = random.choice(("TRANSFORM", "POSITION", "STRING", "COMMAND", "STATUS", "IMAGE", "POLYDATA", "QTDATA", "TDATA", "GET_STATUS", "X" * 12))
-        body = random.choice((b"", struct.pack(">12f", *(random.choice((0.0, 1e30, float("nan"), float("inf"))) for _ in range(12))),
-                              random.randbytes(random.choice((3, 48, 3000))), struct.pack(">HH", 3, 65535) + b"{\"do\": \"take\"}"))
+        kind = random.choice(("TRANSFORM", "POSITION", "STRING", "COMMAND", "STATUS", "IMAGE", "POLYDATA", "QTDATA",
+                              "TDATA", "GET_STATUS", "X" * 12))
+        body = random.choice((b"", struct.pack(">12f",
+                                               *(random.choice((0.0, 1e30, float("nan"), float("inf")))
+                                                 for _ in range(12))),
+                              random.randbytes(random.choice((3, 48, 3000))),
+                              struct.pack(">HH", 3, 65535) + b"{\"do\": \"take\"}"))
         with connected(self.igtl_port) as c:
-            sent(c, igtl_client.message(kind, random.choice(("HandleToReference", "Stylet", "x" * 20)), body) * random.choice((1, 100)))
+            sent(c, igtl_client.message(kind, random.choice(("HandleToReference", "Stylet", "x" * 20)),
+                                        body) * random.choice((1, 100)))
 
     def igtl_long(self, random):
         with connected(self.igtl_port) as c:
             size = random.choice((2**20, 2**32, 2**40, 2**64 - 1))
-            sent(c, igtl_client.HEADER.pack(random.choice((1, 2, 3, 65535)), b"IMAGE", b"x", 0, size, 0) + bytes(3_000_000))
+            sent(c, igtl_client.HEADER.pack(random.choice((1, 2, 3, 65535)), b"IMAGE", b"x", 0, size,
+                                            0) + bytes(3_000_000))
 
     def igtl_many(self, random):
         held = []
@@ -227,7 +245,8 @@ class Part(AnyPart):
             found.append(f"the page is cut off: {error}")
         at = urlsplit(self.server.said["url"])
         try:
-            with urllib.request.urlopen(urlunsplit(at._replace(path="/recordings")), timeout=GOES_ON_WITHIN_S) as answer:
+            with urllib.request.urlopen(urlunsplit(at._replace(path="/recordings")),
+                                        timeout=GOES_ON_WITHIN_S) as answer:
                 json.load(answer)
         except (OSError, ValueError) as error:
             if "503" not in str(error):
@@ -254,4 +273,5 @@ class Part(AnyPart):
             end.megabytes = megabytes
             faults += faults_of(end, allowed=(0,), most_seconds=float("inf"))
             (folder / "stderr").write_text(end.err, encoding="utf-8", errors="replace")
-        return Attempt(kind, f"after {self.attempts - 1} others", shell(arguments) + f"  # scripts/campaign FOLDER hostile --attempt {number}", end, faults)
+        return Attempt(kind, f"after {self.attempts - 1} others",
+                       shell(arguments) + f"  # scripts/campaign FOLDER hostile --attempt {number}", end, faults)

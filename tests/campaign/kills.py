@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Insert, implant and serve are killed (SIGKILL) or told to end (SIGTERM, SIGINT) at any moment. What they leave is absent or
-complete, the next run removes what is unfinished, and a recording lacks at most half a second."""
+"""Insert, implant and serve are killed (SIGKILL) or told to end (SIGTERM, SIGINT) at any moment. What they leave is
+absent or complete, the next run removes what is unfinished, and a recording lacks at most half a second."""
 import json
 import shutil
 import signal
@@ -29,6 +29,18 @@ def killed(command, folder, after_s, how):
         end = wait(process, out, err)
         timer.cancel()
     return end
+
+
+def move(page, seconds):
+    """Moves the needle of a page for this time. Returns faults."""
+    if not page.ready():
+        return [f"the case is not ready: {page.status}"]
+    page.command(do="take")
+    # Again and again, as a page does: what comes before the needle exists is ignored.
+    if not until(lambda: page.hand(40.0, 8.0) or page.time_s > 0.1):
+        return ["the needle does not move"]
+    end_s = page.time_s + seconds
+    return [] if until(lambda: page.hand(40.0, 8.0) or page.time_s >= end_s) else ["the needle does not go on"]
 
 
 class Part(AnyPart):
@@ -63,7 +75,8 @@ class Part(AnyPart):
             faults.append(f"the next run left {hidden}")
         if "out/summary.json" not in files_under(folder):
             faults.append("the next run has no results")
-        return Attempt(f"{name} {how.name}", f"after {after_s:.3f} s", shell(COMMANDS[name]), end if not own else again, faults)
+        return Attempt(f"{name} {how.name}", f"after {after_s:.3f} s", shell(COMMANDS[name]),
+                       end if not own else again, faults)
 
     def of_server(self, random, folder, how):
         """A server whose needle moves is ended."""
@@ -73,19 +86,14 @@ class Part(AnyPart):
         if not server.opened():
             faults.append("the server did not start")
         else:
-            page = server.page()
-            if page.ready():
-                page.command(do="take")
-                # Again and again, as a page does: what comes before the needle exists is ignored.
-                moves = until(lambda: page.hand(40.0, 8.0) or page.time_s > 0.1)
-                begin_s = page.time_s
-                if not moves or not until(lambda: page.hand(40.0, 8.0) or page.time_s >= begin_s + after_s):
-                    faults.append("the needle does not move")
+            try:
+                page = server.page()
+                faults += move(page, after_s)
                 heard_s = page.time_s
-            else:
-                faults.append(f"the case is not ready: {page.status}")
-            end = server.stop(how)
-            page.close()
+                server.stop(how)
+                page.close()
+            except OSError as error:
+                faults.append(f"the page was cut off: {error}")
         end = server.stop(how)
         if end.status != (-how if how == signal.SIGKILL else 0):
             faults.append(f"it ended with {end.name}")
@@ -98,4 +106,5 @@ class Part(AnyPart):
             lost_s = heard_s - (json.loads(said.out)["duration_s"] if said.status == 0 else 0.0)
             if lost_s > MOST_LOST_S:
                 faults.append(f"{lost_s:.2f} s of the recording are lost")
-        return Attempt(f"serve {how.name}", f"after {after_s:.3f} s", shell(server.arguments), said if recordings else end, faults)
+        return Attempt(f"serve {how.name}", f"after {after_s:.3f} s", shell(server.arguments),
+                       said if recordings else end, faults)

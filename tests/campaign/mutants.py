@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Damaged and forged files of every format: each command that reads one ends with exit status 0 or 2 and one line, within
-20 s of processor time, and says neither control characters nor a library's words."""
+"""Damaged and forged files of every format: each command that reads one ends with exit status 0 or 2 and one line,
+within 20 s of processor time, and says neither control characters nor a library's words."""
 
 import bases
 import mutators
@@ -14,7 +14,10 @@ class Part(AnyPart):
 
     def __init__(self, folder):
         super().__init__(folder)
-        self.bases = bases.bases(lambda name: self.measured("blocks", name, lambda: mutators.checked_blocks((folder / name).read_bytes())))
+        self.bases = bases.bases(self.blocks)
+
+    def blocks(self, name):
+        return self.measured("blocks", name, lambda: mutators.checked_blocks((self.folder / name).read_bytes()))
 
     def attempt(self, number, random, folder):
         base = self.bases[number % len(self.bases)]
@@ -26,7 +29,7 @@ class Part(AnyPart):
         (folder / base.name).write_bytes(mutant)
         arguments = [base.name if part == "FILE" else part for part in command]
         end = serve_for_a_moment(arguments, folder) if command[0] == "serve" else run(arguments, folder)
-        faults = faults_of(end)
+        faults = faults_of(end, arguments=arguments)
         if end.status != 0 and (folder / "out").exists():
             faults.append("results of a run that failed")
         if hidden := hidden_under(folder):

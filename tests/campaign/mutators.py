@@ -22,9 +22,11 @@ logging.getLogger("pydicom").setLevel(logging.CRITICAL + 1)
 warnings.filterwarnings("ignore", module="pydicom")
 
 ESCAPE = "\x1b]0;title\x07\x1b[31mred\x7f\u009b2J\r\u202eder\u2028"
-NUMBERS = ("-1", "0", "1", "255", "65536", "2147483648", "4294967295", "99999999999999999999", "1e308", "-1e308", "1e-320", "nan",
+NUMBERS = ("-1", "0", "1", "255", "65536", "2147483648", "4294967295", "99999999999999999999", "1e308", "-1e308",
+           "1e-320", "nan",
            "inf", "-inf", "1e999", "0x10", "1,5", "")
-VALUES = (None, True, -1, 0, 0.5, 1e308, -1e308, 2**31, 2**63, 2**64, "", "x" * 5000, ESCAPE, "nan", [], {}, [[]], [None], {"": 0}, "\0")
+VALUES = (None, True, -1, 0, 0.5, 1e308, -1e308, 2**31, 2**63, 2**64, "", "x" * 5000, ESCAPE, "nan", [], {}, [[]],
+          [None], {"": 0}, "\0")
 INTEGERS = (0, 1, 2, 0x7f, 0xff, 0x7fff, 0xffff, 0x7fffffff, 0xffffffff, 0x7fffffffffffffff, 0xffffffffffffffff)
 
 
@@ -88,10 +90,12 @@ def in_text(data, random):
             if not words:
                 return raw(data, random)
             one = random.choice(words)
-            new = random.choice((ESCAPE.encode(), b"x" * 5000, b"caf\xe9", b"a\0b", b"", random.choice(words)[0], b'"', b"\\"))
+            new = random.choice((ESCAPE.encode(), b"x" * 5000, b"caf\xe9", b"a\0b", b"", random.choice(words)[0], b'"',
+                                 b"\\"))
             return data[:one.start()] + new + data[one.end():]
         case 7:
-            lines[k] = random.choice((b"[" * 50000, b"{" * 50000, b'"' + b"\\" * 999, b"," * 9999, b"\xff\xfe\0", b"#", ESCAPE.encode()))
+            lines[k] = random.choice((b"[" * 50000, b"{" * 50000, b'"' + b"\\" * 999, b"," * 9999, b"\xff\xfe\0", b"#",
+                                      ESCAPE.encode()))
         case _:
             return raw(data, random)
     return b"\n".join(lines)
@@ -181,12 +185,13 @@ def elements(data):
 
 
 def dicom_bytes(data, random):
-    """Wrong lengths and kinds, elements that are missing or there twice, although the lengths around them say otherwise."""
+    """Wrong lengths and kinds, elements that are missing or there twice; the lengths around them are as before."""
     begin, length_at, size, value, end = random.choice(elements(data))
     match random.randrange(5):
         case 0 | 1:
             length = end - value
-            wrong = random.choice((*INTEGERS, length + 1, length + 2, max(0, length - 1), 2 * length, 0xfffffffe)) & (1 << 8 * size) - 1
+            wrong = random.choice((*INTEGERS, length + 1, length + 2, max(0, length - 1), 2 * length,
+                                   0xfffffffe)) & (1 << 8 * size) - 1
             return data[:length_at] + wrong.to_bytes(size, "little") + data[length_at + size:]
         case 2:
             return data[:begin + 4] + random.choice(OTHER_VRS) + data[begin + 6:]
@@ -244,7 +249,8 @@ def dicom_tree(data, random):
         elif element.VR == "AT":
             del dataset[element.tag]
         else:
-            element._value = random.choice((*NUMBERS, ESCAPE, "x" * 3000, "0\\0\\0", "1\\2", "\\\\", "1.2.840.10008.1.2.1"))
+            element._value = random.choice((*NUMBERS, ESCAPE, "x" * 3000, "0\\0\\0", "1\\2", "\\\\",
+                                            "1.2.840.10008.1.2.1"))
     out = io.BytesIO()
     file.save_as(out)
     return out.getvalue()
@@ -267,7 +273,8 @@ def dicom(data, random):
 
 # HDF5
 
-CHECKED = (b"OHDR", b"OCHK", b"FRHP", b"FHDB", b"FHIB", b"BTHD", b"BTIN", b"BTLF", b"FSHD", b"FSSE", b"SMTB", b"EAHD", b"EAIB", b"EASB",
+CHECKED = (b"OHDR", b"OCHK", b"FRHP", b"FHDB", b"FHIB", b"BTHD", b"BTIN", b"BTLF", b"FSHD", b"FSSE", b"SMTB", b"EAHD",
+           b"EAIB", b"EASB",
            b"EADB", b"FAHD", b"FADB")
 LONGEST_BLOCK = 1100
 WORD = 0xffffffff
@@ -292,7 +299,8 @@ def lookup3(data):
         return c
     x, y, z = struct.unpack("<3I", data.ljust(12, b"\0"))
     a, b, c = a + x & WORD, b + y & WORD, c + z & WORD
-    for first, second, k in (("c", "b", 14), ("a", "c", 11), ("b", "a", 25), ("c", "b", 16), ("a", "c", 4), ("b", "a", 14), ("c", "b", 24)):
+    for first, second, k in (("c", "b", 14), ("a", "c", 11), ("b", "a", 25), ("c", "b", 16), ("a", "c", 4),
+                             ("b", "a", 14), ("c", "b", 24)):
         v = {"a": a, "b": b, "c": c}
         v[first] = (v[first] ^ v[second]) - turned(v[second], k) & WORD
         a, b, c = v["a"], v["b"], v["c"]
@@ -314,7 +322,7 @@ def checked_blocks(data):
 
 
 def hdf5_blocks(blocks):
-    """The mutator of the metadata of an HDF5 file that has these checked blocks: their checksums are right afterwards."""
+    """The mutator of an HDF5 file's metadata, in these checked blocks. Their checksums are right afterwards."""
     def changed(data, random):
         data = bytearray(data)
         for _ in range(random.choice((1, 1, 2, 4))):
@@ -333,7 +341,8 @@ def odd_numbers(values, random):
     if values.size == 0 or values.dtype.kind not in "iuf":
         return values
     flat = values.reshape(-1)
-    kinds = (numpy.nan, numpy.inf, -numpy.inf, 0, -1, 1e300, 1e-320) if values.dtype.kind == "f" else (0, -1, 1, 2**31 - 1, 2**62)
+    kinds = (numpy.nan, numpy.inf, -numpy.inf, 0, -1, 1e300, 1e-320) if values.dtype.kind == "f" else (0, -1, 1,
+                                                                                                       2**31 - 1, 2**62)
     for _ in range(random.choice((1, 1, 10))):
         at = random.randrange(flat.size)
         with numpy.errstate(all="ignore"):
@@ -364,7 +373,9 @@ def hdf5_content(data, random):
                     del thing.attrs[key]
                     thing.attrs[key] = new.decode("utf-8", "ignore")
                 else:
-                    thing.attrs[key] = odd_numbers(value, random) if random.random() < 0.8 else random.choice(("", ESCAPE, [1, 2, 3]))
+                    thing.attrs[key] = odd_numbers(value,
+                                                   random) if random.random() < 0.8 else random.choice(("", ESCAPE,
+                                                                                                        [1, 2, 3]))
             elif name == "/":
                 continue
             elif random.random() < 0.15:

@@ -6,8 +6,8 @@ import bases
 
 
 class AnyPart:
-    """A part of the campaign: `count` attempts, each of which depends on its number and a random.Random only. Parts with
-    the same `inputs` share a folder of input files."""
+    """A part of the campaign: `count` attempts, each of which depends on its number and a random.Random only. Parts
+    with the same `inputs` share a folder of input files."""
     count = 0
     inputs = "files"
 
