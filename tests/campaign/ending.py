@@ -15,7 +15,7 @@ from words import FOREIGN, harmful
 STYLET = os.environ["STYLET"]
 MOST_SECONDS = 20    # of processor time, which does not depend on what else the machine does
 HANGS_AFTER_S = 300
-PROGRESS = re.compile(r"( \.\.\.|: \d+ %)$")
+NO_ERROR = re.compile(r"stylet: (?!error: )|.*( \.\.\.|: \d+ %)$")  # warnings, estimates and progress
 QUOTED = re.compile(r"'[^'\n]*'|\"[^\"\n]*\"")
 
 
@@ -35,9 +35,8 @@ class End:
 
     @property
     def errors(self):
-        """The lines of standard error without progress and warnings."""
-        return [line for line in self.err.splitlines()
-                if not PROGRESS.search(line) and not line.startswith("stylet: warning: ")]
+        """The lines of standard error without warnings, estimates and progress."""
+        return [line for line in self.err.splitlines() if not NO_ERROR.match(line)]
 
 
 @dataclass
