@@ -145,8 +145,8 @@ class End:
 
     @property
     def lines(self):
-        """What it said beside warnings."""
-        return [line for line in self.errors if not line.startswith("stylet: warning: ")]
+        """What it said beside warnings and estimates."""
+        return [line for line in self.errors if not re.match("stylet: (?!error: )", line)]
 
 
 def push_for_a_moment(server):
