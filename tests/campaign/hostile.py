@@ -33,7 +33,8 @@ def sent(connection, data):
     try:
         connection.sendall(data)
         connection.settimeout(0.1)
-        while connection.recv(65536):
+        end = time.monotonic() + 0.3
+        while time.monotonic() < end and connection.recv(65536):
             pass
     except OSError:
         pass
