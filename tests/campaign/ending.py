@@ -99,8 +99,8 @@ def faults_of(end, allowed=(0, 2), arguments=(), most_seconds=MOST_SECONDS):
     if bad := harmful(end.out + end.err):
         found.append(f"control characters {bad[:5]}")
     said = end.err
-    for argument in arguments:
-        said = said.replace(str(argument), "…")
+    for argument in sorted(map(str, arguments), key=len, reverse=True):
+        said = said.replace(argument, "…")
     if words := [word for word in FOREIGN if word in QUOTED.sub("…", said)]:
         found.append(f"words of a library: {words}")
     if end.status > 0 and (len(end.errors) != 1 or not end.errors[0].startswith("stylet: error: ")):

@@ -54,7 +54,7 @@ class Part(AnyPart):
         with tempfile.TemporaryDirectory() as undisturbed:
             bases.link(self.folder, Path(undisturbed))
             calls = self.measured("calls", f"{name} {call}", lambda: self.calls(name, call, Path(undisturbed)))
-        nth = round(math.exp(random.uniform(0, math.log(1 + calls))))
+        nth = round(math.exp(random.uniform(0, math.log(max(calls, 1)))))
         settings = {"LD_PRELOAD": str(self.library), "FAULT_CALL": call, "FAULT_NTH": str(nth),
                     "FAULT_ERRNO": str(random.choice(CALLS[call]))}
         if call not in ("malloc", "mmap") and random.random() < 0.3:
