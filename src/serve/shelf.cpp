@@ -69,4 +69,10 @@ Result<RunRecording> Shelf::read(const std::string& name) const {
   return read_recording(folder(name) / "run.h5");
 }
 
+std::vector<Result<RecordingHead>> Shelf::heads(std::span<const std::string> names) const {
+  std::vector<fs::path> files;
+  for (const std::string& name : names) files.push_back(folder(name) / "run.h5");
+  return read_recording_heads(files);
+}
+
 }  // namespace stylet::serve
