@@ -25,7 +25,9 @@ class LinkCompanion final : public serve::Companion {
   [[nodiscard]] std::string name() const override { return "OpenIGTLink"; }
   [[nodiscard]] std::unique_ptr<Device> device() override { return has_hand_ ? link_->device() : nullptr; }
   [[nodiscard]] std::string why_no_pose() const override;
-  [[nodiscard]] std::string trouble() const override;
+  std::vector<serve::Notice> news() override;
+  [[nodiscard]] std::int64_t not_used() const override { return link_->state().not_used; }
+  std::vector<serve::GivenCommand> take_commands() override;
 
   void show(const serve::Scene& scene) override;
   void show(const Snapshot& snapshot, const DeviceSnapshot& device) override;
@@ -44,42 +46,45 @@ class LinkCompanion final : public serve::Companion {
   std::unique_ptr<igtl::Link> link_;
   igtl::LinkSettings settings_;
   bool has_hand_;
-  Eigen::Matrix3Xf at_rest_;    ///< [mm] LPS, points of the undeformed scene
-  Eigen::Matrix3Xf displaced_;  ///< [mm] displacement that was published last
+  bool is_handle_told_ = false;  ///< that the handle's pose is received while pages move the needle
+  Eigen::Matrix3Xf at_rest_;     ///< [mm] LPS, points of the undeformed scene
+  Eigen::Matrix3Xf displaced_;   ///< [mm] displacement that was published last
   std::shared_ptr<const igtl::Surface::Triangles> triangles_;
   std::optional<Pose> probe_;  ///< of the last picture
 };
 
-/// The problem, with the option that cures it where it is the checksums. The link does not know the program's options.
-std::string with_option(const igtl::LinkState& state, bool checksums) {
-  const bool by_checksum = checksums && state.problem.find("checksum") != std::string::npos;
-  return state.problem + (by_checksum ? " (--igtl-no-checksum)" : "");
-}
-
 std::string LinkCompanion::why_no_pose() const {
   const igtl::LinkState state = link_->state();
-  const std::string closed = state.garbage > 0 ? "; " + with_option(state, settings_.checksums) : "";
   if (state.connections == 0)
-    return (settings_.role == igtl::Role::server
-                ? fmt::format("no client is connected to port {}", state.port)
-                : fmt::format("no connection to {}:{}", bracketed(settings_.host), state.port)) +
-           closed;
-  if (state.poses + state.unusable == 0) {
-    return fmt::format("no {} has been received yet{}", settings_.input,
-                       state.unused.empty() ? "" : ", but " + state.unused + ", which is not used");
-  }
+    return settings_.role == igtl::Role::server
+               ? fmt::format("no client is connected to port {}", state.port)
+               : fmt::format("no connection to {}:{}", bracketed(settings_.host), state.port);
+  if (state.poses + state.unusable == 0) return fmt::format("no {} has been received yet", settings_.input);
   if (!state.tracked) return fmt::format("no usable {} is received", settings_.input);
   return fmt::format("no new {} is received", settings_.input);
 }
 
-std::string LinkCompanion::trouble() const {
-  const igtl::LinkState state = link_->state();
-  if (state.garbage > 0) return with_option(state, settings_.checksums) + '.';
-  if (state.unused.empty() || state.poses + state.unusable + state.probe_poses > 0) return {};
-  return fmt::format(
-      "{} is received and not used. Poses are taken from TRANSFORM or POSITION with a quaternion, named "
-      "{} for the needle and {} for the probe.",
-      state.unused, settings_.input, settings_.probe_input);
+std::vector<serve::Notice> LinkCompanion::news() {
+  std::vector<serve::Notice> news;
+  for (const igtl::Dropped& dropped : link_->news())
+    news.push_back(
+        {dropped.count > 1 ? fmt::format("{} ({} so far)", dropped.what, dropped.count) : dropped.what, dropped.cure});
+  if (has_hand_ || is_handle_told_ || link_->state().poses == 0) return news;
+  is_handle_told_ = true;
+  news.push_back({settings_.input + " is received, but pages move the needle",
+                  "Start Stylet with --hand igtl if the needle is to follow it"});
+  return news;
+}
+
+std::vector<serve::GivenCommand> LinkCompanion::take_commands() {
+  std::vector<serve::GivenCommand> commands;
+  for (igtl::GivenCommand& given : link_->take_commands()) {
+    std::string text = given.text;
+    commands.push_back({std::move(text), [this, given = std::move(given)](const std::optional<serve::Notice>& refused) {
+                          link_->answer(given, refused ? refused->text + ". " + refused->cure : std::string());
+                        }});
+  }
+  return commands;
 }
 
 void LinkCompanion::show(const serve::Scene& scene) {

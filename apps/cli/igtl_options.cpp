@@ -16,7 +16,7 @@ void add_igtl_options(CLI::App& app, IgtlArguments& arguments) {
       ->excludes(listen);
   app.add_flag("--igtl-no-checksum", arguments.no_checksum,
                "Take OpenIGTLink messages whose checksum (CRC) is wrong or 0, as 3D Slicer and PLUS can be set to; "
-               "without it such a message closes its connection");
+               "without it such messages are dropped");
   option(&app, "--hand", arguments.hand, "WHO",
          "Source of the needle's motion: page, or igtl for the transform HandleToReference received over "
          "OpenIGTLink")

@@ -9,6 +9,8 @@
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/write.hpp>
 
+#include <sstream>
+
 namespace stylet::igtl {
 
 namespace asio = boost::asio;
@@ -29,10 +31,22 @@ void set_options(Connection::Socket& socket) {
   socket.set_option(Timeout(timeout_ms), ignored);
 }
 
+std::string peer_of(const Connection::Socket& socket) {
+  error_code error;
+  const auto peer = socket.remote_endpoint(error);
+  if (error) return "an unknown address";
+  std::ostringstream text;
+  text << peer;
+  return text.str();
+}
+
 }  // namespace
 
 Connection::Connection(Socket socket, Events events, bool checksums)
-    : socket_(std::move(socket)), events_(std::move(events)), reader_({.checksums = checksums}) {
+    : socket_(std::move(socket)),
+      peer_(peer_of(socket_)),
+      events_(std::move(events)),
+      reader_({.checksums = checksums}) {
   set_options(socket_);
 }
 
@@ -41,13 +55,16 @@ void Connection::start() { read(); }
 void Connection::read() {
   socket_.async_read_some(asio::buffer(room_), [self = shared_from_this()](const error_code& error, std::size_t n) {
     if (self->closed_) return;
-    if (error) return self->close();
+    if (error && !self->reader_.is_inside()) return self->close();
+    if (error)
+      return self->close(Refusal{"cut", "it ended inside a message",
+                                 "Let the other program send whole messages before it disconnects"});
     Result<> ok = Ok{};
     survive(
         "an OpenIGTLink message",
         [&] { ok = self->reader_.take(std::span(self->room_).first(n), self->events_.message); },
         [&](const Error& why) { ok = failure(why.where, "something at which this program failed", why.cure); });
-    if (!ok) return self->close(ok.error());
+    if (!ok) return self->close(Refusal{"no message", "it sent " + ok.error().what, ok.error().cure});
     self->read();
   });
 }
@@ -59,6 +76,16 @@ bool Connection::offer(Content content, Shared bytes) {
   place = std::move(bytes);
   send();
   return free;
+}
+
+bool Connection::answer(const Bytes& bytes) {
+  constexpr std::size_t most = 65536;
+  const Shared& before = waiting_.at(answers);
+  Bytes all = before ? *before : Bytes{};
+  if (all.size() + bytes.size() > most) return false;
+  all.insert(all.end(), bytes.begin(), bytes.end());
+  offer(answers, std::make_shared<const Bytes>(std::move(all)));
+  return true;
 }
 
 void Connection::send() {
@@ -81,14 +108,14 @@ void Connection::send() {
   });
 }
 
-void Connection::close(const std::optional<Error>& garbage) {
+void Connection::close(const std::optional<Refusal>& why) {
   if (closed_) return;
   closed_ = true;
   waiting_ = {};
   error_code ignored;
   socket_.shutdown(Socket::shutdown_both, ignored);
   socket_.close(ignored);
-  events_.closed(garbage);
+  events_.closed(why);
 }
 
 bool Connection::sending_since(Clock::time_point& start) const {

@@ -19,12 +19,12 @@ class Connection : public std::enable_shared_from_this<Connection> {
   using Socket = boost::asio::ip::tcp::socket;
   using Clock = std::chrono::steady_clock;
   using Shared = std::shared_ptr<const Bytes>;
-  enum Content { status, poses, surface, image, kContents };
+  enum Content { answers, status, poses, surface, image, kContents };
 
   struct Events {
     std::function<void(const Incoming&)> message;
-    /// Called once; no event follows. @param garbage what was wrong with the received bytes; empty: nothing was wrong
-    std::function<void(const std::optional<Error>& garbage)> closed;
+    /// Called once; no event follows. @param why what was wrong with the received bytes; empty: nothing was wrong
+    std::function<void(const std::optional<Refusal>& why)> closed;
   };
 
   /// @param checksums whether the received bodies have to match their checksums
@@ -32,16 +32,21 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void start();  ///< starts reading
   /// Queues a message. @return false if it replaced a waiting message of the same content
   bool offer(Content content, Shared bytes);
+  /// Queues the answer to a command behind those that are waiting. @return false if too many bytes are waiting
+  bool answer(const Bytes& bytes);
   /// Closes the connection and calls Events::closed; does nothing if it is closed already.
-  void close(const std::optional<Error>& garbage = {});
+  void close(const std::optional<Refusal>& why = {});
   /// Whether data are being sent. @param start set to the time at which this send started
   [[nodiscard]] bool sending_since(Clock::time_point& start) const;
+  /// Address and port of the other program.
+  [[nodiscard]] const std::string& peer() const { return peer_; }
 
  private:
   void read();
   void send();
 
   Socket socket_;
+  std::string peer_;
   Events events_;
   MessageReader reader_;
   std::array<std::uint8_t, 65536> room_{};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "connection.hpp"
+#include "drop_log.hpp"
 #include "pose_input.hpp"
 #include "stylet/igtl/link.hpp"
 
@@ -10,7 +11,8 @@
 
 namespace stylet::igtl {
 
-/// All connections of a link and their counters. All functions except state() must be called in the link's thread.
+/// All connections of a link and their counters. All functions except state(), news() and take_commands() must be
+/// called in the link's thread.
 class Hub {
  public:
   static constexpr std::chrono::seconds kTokenTime{5};
@@ -41,6 +43,8 @@ class Hub {
   void feed(std::shared_ptr<PoseChannel> channel) { input_.feed(std::move(channel)); }
   /// Sets the channel that receives the probe's poses.
   void feed_probe(std::shared_ptr<PoseChannel> channel) { probe_.feed(std::move(channel)); }
+  /// Sends the answer to a command. @param refused empty: it has been carried out
+  void answer(const GivenCommand& command, const std::string& refused);
   /// Closes all connections.
   void close();
 
@@ -49,13 +53,21 @@ class Hub {
   /// Copies the current counters to the state that state() returns.
   void show_state();
   [[nodiscard]] LinkState state() const;
+  std::vector<Dropped> news() { return drops_.news(DropLog::Clock::now()); }
+  std::vector<GivenCommand> take_commands();
 
  private:
   void offer(Connection& to, Connection::Content content, const Connection::Shared& bytes);
   void hear(ConnectionId from, const Incoming& message);
   void hear_stranger(ConnectionId from, const Incoming& message);
+  void hear_poses(ConnectionId from, const Incoming& message);
+  std::optional<Refusal> hear_pose(ConnectionId from, PoseInput& input, const ToolPose& pose);
+  void hear_command(ConnectionId from, const Incoming& message);
+  void refuse(ConnectionId from, const Incoming& message, const Refusal& refusal);
+  void leave_out(ConnectionId from, const Incoming& message, const std::string& why, const std::string& cure);
+  void drop(const std::string& kind, std::string what, std::string cure, bool is_told_once = false);
   void welcome(Connection& connection);
-  void ended(ConnectionId id, const std::optional<Error>& garbage);
+  void ended(ConnectionId id, const std::optional<Refusal>& why);
   [[nodiscard]] std::size_t known() const { return connections_.size() - strangers_.size(); }
 
   const LinkSettings& settings_;
@@ -67,8 +79,10 @@ class Hub {
   std::array<Connection::Shared, Connection::kContents> greeting_;
   ConnectionId last_id_ = 0;
   LinkState counted_;
+  DropLog drops_;
   mutable std::mutex mutex_;
-  LinkState shown_;  ///< guarded by the mutex
+  LinkState shown_;                     ///< guarded by the mutex
+  std::vector<GivenCommand> commands_;  ///< guarded by the mutex: given, and not taken
 };
 
 }  // namespace stylet::igtl

@@ -125,6 +125,14 @@ std::optional<Pose> Link::probe_pose() {
   return newest.valid ? std::optional<Pose>(pose(newest.pose)) : std::nullopt;
 }
 
+std::vector<Dropped> Link::news() { return parts_->hub.news(); }
+
+std::vector<GivenCommand> Link::take_commands() { return parts_->hub.take_commands(); }
+
+void Link::answer(const GivenCommand& command, const std::string& refused) {
+  boost::asio::post(parts_->io, [&hub = parts_->hub, command, refused] { hub.answer(command, refused); });
+}
+
 LinkState Link::state() const { return parts_->hub.state(); }
 
 }  // namespace stylet::igtl

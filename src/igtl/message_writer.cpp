@@ -94,6 +94,19 @@ void add_string(Bytes& out, const std::string& name, const std::string& text) {
   finish(out, body, "STRING", name);
 }
 
+void add_answer(Bytes& out, const std::string& name, std::uint32_t command_id, const std::string& command_name,
+                const std::string& text) {
+  constexpr std::uint16_t ascii = 3;
+  constexpr std::size_t fixed = 4 + kCommandNameBytes + 6;
+  const std::size_t body = begin(out, fixed + text.size());
+  boost::endian::store_big_u32(out.data() + body, command_id);
+  std::copy_n(command_name.begin(), std::min(command_name.size(), kCommandNameBytes), out.data() + body + 4);
+  boost::endian::store_big_u16(out.data() + body + fixed - 6, ascii);
+  boost::endian::store_big_u32(out.data() + body + fixed - 4, static_cast<std::uint32_t>(text.size()));
+  std::copy(text.begin(), text.end(), out.data() + body + fixed);
+  finish(out, body, "RTS_COMMAND", name);
+}
+
 void add_points(Bytes& out, const std::string& name, std::span<const Triple> lps) {
   const std::size_t body = begin(out, lps.size() * sizeof(igtl_point_element));
   for (std::size_t k = 0; k < lps.size(); ++k) {

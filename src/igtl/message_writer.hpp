@@ -17,6 +17,9 @@ using Bytes = std::vector<std::uint8_t>;
 inline constexpr std::size_t kNameBytes = 20;
 [[nodiscard]] inline std::string cut_name(const std::string& name) { return name.substr(0, kNameBytes); }
 
+/// Bytes of the name in a COMMAND and in the answer to it.
+inline constexpr std::size_t kCommandNameBytes = 128;
+
 /// Codes of a STATUS message.
 enum class StatusCode : std::uint16_t { ok = 1, not_ready = 13 };
 
@@ -26,6 +29,9 @@ void add_transform(Bytes& out, const std::string& name, const Pose& lps);
 /// NDARRAY of six doubles: force [N], torque [N mm], RAS.
 void add_wrench(Bytes& out, const std::string& name, const Wrench& lps);
 void add_string(Bytes& out, const std::string& name, const std::string& text);
+/// RTS_COMMAND: the answer to the COMMAND of this number and name.
+void add_answer(Bytes& out, const std::string& name, std::uint32_t command_id, const std::string& command_name,
+                const std::string& text);
 void add_points(Bytes& out, const std::string& name, std::span<const Triple> lps);
 /// @param surface its triangles' corners must be indices of its points
 void add_surface(Bytes& out, const std::string& name, const Surface& surface);

@@ -3,20 +3,10 @@
 
 namespace stylet::igtl {
 
-void PoseInput::hear(ConnectionId from, const Incoming& message, Clock::time_point now) {
-  if (message.kind == Incoming::Kind::status) {
-    hear_status(from, message.name, message.code);
-  } else if (message.kind == Incoming::Kind::pose && message.name == name_) {
-    hear_pose(from, message.matrix, now);
-  } else {
-    ++counts_.other_messages;
-  }
-}
-
-void PoseInput::hear_pose(ConnectionId from, const RasMatrix& matrix, Clock::time_point now) {
+PoseInput::Heard PoseInput::hear_pose(ConnectionId from, const RasMatrix& matrix, Clock::time_point now) {
   if (owner_ != from && owner_ != 0 && now - heard_ < kSilent) {
     ++counts_.of_others;
-    return;
+    return Heard::of_other;
   }
   owner_ = from;
   heard_ = now;
@@ -24,10 +14,11 @@ void PoseInput::hear_pose(ConnectionId from, const RasMatrix& matrix, Clock::tim
   if (pose && !complaints_.contains(from)) {
     ++counts_.poses;
     write({true, plain(*pose)});
-  } else {
-    ++counts_.unusable;
-    write({});
+    return Heard::used;
   }
+  ++counts_.unusable;
+  write({});
+  return pose ? Heard::sender_not_ok : Heard::no_rigid_motion;
 }
 
 void PoseInput::hear_status(ConnectionId from, const std::string& name, std::uint16_t code) {

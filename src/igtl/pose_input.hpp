@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "message_reader.hpp"
+#include "ras.hpp"
 #include "tracked_device.hpp"
 
 #include <chrono>
+#include <cstdint>
 #include <map>
 #include <set>
+#include <string>
 
 namespace stylet::igtl {
 
@@ -29,21 +31,25 @@ class PoseInput {
   /// Sets the channel that receives the poses. It gets nothing until the next message.
   void feed(std::shared_ptr<PoseChannel> channel) { channel_ = std::move(channel); }
 
-  void hear(ConnectionId from, const Incoming& message, Clock::time_point now);
+  enum class Heard {
+    used,
+    no_rigid_motion,
+    sender_not_ok,  ///< the last STATUS of its sender, under some name, is not OK
+    of_other        ///< another connection has the handle
+  };
+  Heard hear_pose(ConnectionId from, const RasMatrix& matrix, Clock::time_point now);
+  void hear_status(ConnectionId from, const std::string& name, std::uint16_t code);
   void closed(ConnectionId connection);
 
   struct Counts {
-    std::int64_t poses = 0;           ///< usable poses
-    std::int64_t unusable = 0;        ///< poses that were no rigid motion, or whose sender was not OK
-    std::int64_t of_others = 0;       ///< poses from a connection that does not have the handle
-    std::int64_t other_messages = 0;  ///< messages of other types and names
+    std::int64_t poses = 0;      ///< usable poses
+    std::int64_t unusable = 0;   ///< poses that were no rigid motion, or whose sender was not OK
+    std::int64_t of_others = 0;  ///< poses from a connection that does not have the handle
   };
   [[nodiscard]] const Counts& counts() const { return counts_; }
   [[nodiscard]] bool tracked() const { return tracked_; }
 
  private:
-  void hear_pose(ConnectionId from, const RasMatrix& matrix, Clock::time_point now);
-  void hear_status(ConnectionId from, const std::string& name, std::uint16_t code);
   void write(const TrackedPose& pose);
 
   std::string name_;

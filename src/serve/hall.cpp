@@ -128,6 +128,7 @@ void Hall::heard(Viewer& viewer, const Command& command) {
 }
 
 void Hall::say_status() {
+  session_.hold(holding_.holder() != 0);
   OwnStatus own{.held = holding_.holder() != 0, .asking = holding_.asking(), .viewers = viewers_.size()};
   watch_.watch(holding_.holder());
   to_each([&](Viewer& viewer) {

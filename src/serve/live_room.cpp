@@ -264,10 +264,6 @@ Reply LiveRoom::tick(bool whole_curve) {
 void LiveRoom::show_companion(Reply& reply) {
   Companion& companion = *settings_.companion;
   run_->show_to(companion);
-  if (std::string trouble = companion.trouble(); trouble != companion_trouble_) {
-    if (!trouble.empty() && settings_.say) settings_.say(companion.name() + ": " + trouble);
-    companion_trouble_ = std::move(trouble);
-  }
   std::string problem = run_->device_problem(companion);
   reply.is_urgent = reply.is_urgent || problem != told_.device_problem;
   told_.device_problem = std::move(problem);

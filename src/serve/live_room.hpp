@@ -71,7 +71,6 @@ class LiveRoom {
   bool is_aside_ = false;                 ///< a recording is shown
   std::vector<LiveEvent> happened_;       ///< events of the run
   SessionStatus told_;                    ///< the part that is about the needle: what describe() gives
-  std::string companion_trouble_;         ///< the last sentence for the terminal about the companion
 };
 
 }  // namespace stylet::serve

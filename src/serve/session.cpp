@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session.hpp"
 
+#include "spoken_command.hpp"
 #include "stylet/core/survive.hpp"
 
 #include <algorithm>
@@ -22,7 +23,9 @@ Session::Session(SessionSettings settings, Audience& audience)
       case_(settings_),
       live_(settings_),
       replay_(settings_),
-      pictures_(settings_) {}
+      pictures_(settings_) {
+  if (settings_.companion) status_.companion.name = settings_.companion->name();
+}
 
 void Session::start() {
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
@@ -65,11 +68,18 @@ void Session::say_status() {
   next_status_ = SessionClock::now() + kStatusEvery;
 }
 
+/// Keeps a refusal that is for no viewer, since it is for the companion.
+void Session::pass(const Message& message) {
+  const auto* refusal = std::get_if<Refusal>(&message);
+  if (refusal == nullptr || refusal->viewer != 0) return audience_.show(message);
+  turn_.refuse(refusal->why);
+}
+
 /// @return whether it has a picture of the needle
 bool Session::show(const Reply& reply) {
   bool has_picture = false;
   for (const Message& message : reply.show) {
-    audience_.show(message);
+    pass(message);
     const auto* frame = std::get_if<std::shared_ptr<const LiveFrame>>(&message);
     has_picture = has_picture || frame != nullptr;
     if (frame != nullptr ? (*frame)->is_news : std::holds_alternative<LiveSeeds>(message)) pass_moment();
@@ -154,6 +164,36 @@ void Session::carry_out(const Request& request) {
   say_status();
 }
 
+/// Tells what the companion has not used, and carries out the commands that it has been given.
+void Session::heed_companion() {
+  if (!settings_.companion) return;
+  Companion& companion = *settings_.companion;
+  for (Notice& notice : companion.news()) {
+    if (settings_.say) settings_.say(companion.name() + ": " + notice.text + ". " + notice.cure + ".");
+    status_.companion.newest = std::move(notice);
+    next_status_ = {};
+  }
+  status_.companion.not_used = companion.not_used();
+  for (const GivenCommand& given : companion.take_commands()) given.answer(obey(given.text));
+}
+
+/// Carries out a command of the companion.
+/// @return why it is not carried out; empty: it is
+std::optional<Notice> Session::obey(const std::string& text) {
+  const Result<Command> command = spoken_command(text);
+  if (!command) return notice_of(command.error());
+  const CommandRow& row = row_of(command->what);
+  if (!turn_.may_command(status_.device))
+    return Notice{"a page holds the needle", "Hand it over there, or start Stylet with --hand igtl"};
+  const bool needs_live = row.counts == While::live && !live_.is_live();
+  if (needs_live || (row.counts == While::replay && !is_replaying_))
+    return Notice{needs_live ? "no needle is live now" : "no recording is shown now",
+                  needs_live ? "End the replay first, or wait until the case is open" : "Show a recording first"};
+  turn_.begin();
+  carry_out({*command, 0});
+  return turn_.end();
+}
+
 Reply Session::ask_room(const CommandRow& row, const Request& request) {
   switch (row.desk) {
     case Desk::open_case:
@@ -191,6 +231,7 @@ void Session::tick(double dt_s) {
   if (const auto map = case_.map_news(is_replaying_)) audience_.show(*map);
   show(live_.follow_implant());
   pictures_.serve_companion(live_.is_live());
+  heed_companion();
   const bool is_streaming = pictures_.serves_companion() && live_.is_running();
   if (pictures_.wants_moment() || is_streaming) pass_moment();
   show(pictures_.news(live_.is_live()));

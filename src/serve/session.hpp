@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "companion_turn.hpp"
 #include "complaints.hpp"
 #include "live_room.hpp"
 #include "mailbox.hpp"
@@ -10,6 +11,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <optional>
 #include <thread>
 
 namespace stylet::serve {
@@ -31,6 +33,8 @@ class Session {
   void welcome() { is_awaited_ = true; }
   /// Sets the target of the hand that holds the needle. Call it from one thread only.
   void aim(const HandTarget& target) { live_.aim(target); }
+  /// Says whether a page holds the needle. May be called from any thread.
+  void hold(bool is_held) { turn_.hold(is_held); }
   /// Stops the needle, because nobody holds it. Call it from the same thread as aim().
   void let_go();
 
@@ -41,6 +45,8 @@ class Session {
   void turn(const std::stop_token& stop, SessionClock::time_point& before);
   void begin();
   void carry_out(const Request& request);
+  void heed_companion();
+  std::optional<Notice> obey(const std::string& text);
   Reply ask_room(const CommandRow& row, const Request& request);
   void tick(double dt_s);
   bool show(const Reply& reply);
@@ -52,7 +58,8 @@ class Session {
   void pass_moment();
   void say_status();
   Progress progress();
-  void refuse(const Request& request, const Notice& why) { audience_.show(Refusal{request.viewer, why}); }
+  void refuse(const Request& request, const Notice& why) { pass(Refusal{request.viewer, why}); }
+  void pass(const Message& message);
   void fail(const Notice& why);
   void give_up(const Request& request, const Error& why);
   void tell_all(const Error& why);
@@ -68,6 +75,7 @@ class Session {
   Mailbox mail_;
   SessionStatus status_;
   std::atomic<bool> is_awaited_ = true;  ///< the whole curve is
+  CompanionTurn turn_;
   std::chrono::steady_clock::time_point next_status_;
   std::chrono::steady_clock::time_point last_progress_;
   std::jthread thread_;  ///< last member, so that it starts when the others exist

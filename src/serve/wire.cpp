@@ -73,6 +73,23 @@ std::optional<HandTarget> decode_hand(std::span<const std::byte> message) {
       .depth_mm = v[0], .speed_mm_per_s = v[1], .roll_deg = v[2], .tilt_left_deg = v[3], .tilt_anterior_deg = v[4]};
 }
 
+/// The displacement of a frame in the smallest unit in which the largest fits 8 bits.
+struct CoarseDisplacement {
+  double unit_mm;
+  std::vector<std::int8_t> values;
+
+  explicit CoarseDisplacement(const LiveFrame& f) : values(f.displacement.size()) {
+    int most = 0;
+    for (const std::int16_t u : f.displacement) most = std::max(most, std::abs(int{u}));
+    const double units = std::max(1.0, most / 127.0);
+    unit_mm = units * f.unit_mm;
+    std::ranges::transform(f.displacement, values.begin(),
+                           [units](std::int16_t u) { return static_cast<std::int8_t>(std::lround(u / units)); });
+  }
+};
+
+}  // namespace
+
 std::optional<Command> decode_command(std::string_view text) {
   const Result<nlohmann::json> parsed = detail::parse_json(text, "command");
   if (!parsed) return std::nullopt;
@@ -96,23 +113,6 @@ std::optional<Command> decode_command(std::string_view text) {
   }
   return command;
 }
-
-/// The displacement of a frame in the smallest unit in which the largest fits 8 bits.
-struct CoarseDisplacement {
-  double unit_mm;
-  std::vector<std::int8_t> values;
-
-  explicit CoarseDisplacement(const LiveFrame& f) : values(f.displacement.size()) {
-    int most = 0;
-    for (const std::int16_t u : f.displacement) most = std::max(most, std::abs(int{u}));
-    const double units = std::max(1.0, most / 127.0);
-    unit_mm = units * f.unit_mm;
-    std::ranges::transform(f.displacement, values.begin(),
-                           [units](std::int16_t u) { return static_cast<std::int8_t>(std::lround(u / units)); });
-  }
-};
-
-}  // namespace
 
 Bytes encode(const Scene& scene, std::uint32_t number) {
   const std::size_t padded = (scene.text.size() + 3) / 4 * 4;

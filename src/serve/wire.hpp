@@ -64,6 +64,10 @@ Bytes encode(Kind kind, std::string_view json, std::uint32_t number);
 /// finite or out of range.
 std::optional<std::variant<HandTarget, Command, Seen>> decode(std::span<const std::byte> message);
 
+/// Decodes the JSON of a command. Empty if it is malformed: an unknown command, an argument that is missing, of another
+/// type or out of range.
+std::optional<Command> decode_command(std::string_view json);
+
 /// Reduces a curve to at most `most` samples: divides it into equal parts and keeps of each the samples with the least
 /// and the largest axial force, in their order.
 void thin(std::vector<Step>& curve, std::size_t most);

@@ -73,22 +73,38 @@ class ServeIgtl(LinkedServe):
             client.send_transform(HANDLE, along(start, 5.0))
             self.assertLess(apart(client.transform(BASE), start), 1e-3)
 
-    def test_says_why_a_connection_was_closed_and_what_is_not_used(self):
+    def test_says_what_it_does_not_use(self):
         server, port = self.link("--hand", "igtl")
         whole = message("TRANSFORM", HANDLE, struct.pack(">12f", *(1, 0, 0, 0, 1, 0, 0, 0, 1, 10, 20, -30)))
-        # Checksum 0, header version 3, a type that is not used, and a name that is not used.
-        for sent, says in ((whole[:50] + bytes(8) + whole[58:], ["checksum, which is 0", "--igtl-no-checksum"]),
-                           (b"\0\3" + whole[2:], ["header of version 3, which is not read", "version 1 or 2"])):
-            bad = self.client(port)
-            bad.connection.sendall(sent)
-            with self.assertRaises(ConnectionError):
-                while True:
-                    bad.receive()
+        client = self.client(port)
+        # Checksum 0, header version 3, types and names that are not used, no message at all.
+        for sent, says in ((whole[:50] + bytes(8) + whole[58:], ["checksum is 0", HANDLE, "--igtl-no-checksum"]),
+                           (b"\0\3" + whole[2:], ["header has version 3, which is not read", "version 1 or 2"]),
+                           (message("SENSOR", "Tracker", whole[58:]), ["SENSOR 'Tracker' from 127.0.0.1:", "not used"]),
+                           (message("TRANSFORM", "StylusToTracker", whole[58:]), ["'StylusToTracker'", HANDLE]),
+                           (b"GET / HTTP/1.1\r\n" + bytes(58), ["is closed", "no header of OpenIGTLink"])):
+            client.connection.sendall(sent)
             self.await_said(server, says)
-        server, port = self.link("--hand", "igtl")
-        for kind, name in (("QTDATA", "Tracker"), ("TRANSFORM", "StylusToTracker")):
-            self.client(port).connection.sendall(message(kind, name, whole[58:]))
-            self.await_said(server, [f"{kind} '{name}' is received and not used", HANDLE])
+        with self.assertRaises(ConnectionError):
+            while True:
+                client.receive()
+
+    def test_starts_again_and_chooses_a_hole_by_a_string(self):
+        _, port = self.link("--hand", "igtl")
+        client = self.client(port)
+        start = client.transform(BASE)
+
+        def answer(text):
+            client.connection.sendall(message("STRING", "Stylet", struct.pack(">HH", 3, len(text)) + text.encode()))
+            return client.next("STRING", "Stylet")[4:].decode()
+
+        self.lead(client, client, start, 5.0)
+        self.assertEqual(answer("start again"), "done: start again")
+        while apart(client.transform(BASE), start) > 0.01:
+            pass
+        said = answer('{"do": "hole", "hole": "Z99"}')
+        self.assertTrue(said.startswith("refused: ") and "Z99" in said, said)
+        self.assertIn("hole HOLE", answer("dance"))
 
     def await_said(self, server, texts):
         """Reads lines of the terminal until one has all texts."""

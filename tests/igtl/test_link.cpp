@@ -2,7 +2,10 @@
 // The link as a server.
 #include "peer.hpp"
 
+#include "stylet/core/printable.hpp"
 #include "support/thrower.hpp"
+
+#include <random>
 
 using namespace stylet;
 using namespace stylet::igtl;
@@ -35,6 +38,23 @@ Surface net(std::uint32_t n, float z) {
     }
   s.triangles = std::make_shared<const Surface::Triangles>(std::move(triangles));
   return s;
+}
+
+Raw text_message(const char* name, const std::string& text) {
+  auto message = ::igtl::StringMessage::New();
+  message->SetDeviceName(name);
+  message->SetString(text.c_str());
+  return packed(*message);
+}
+
+/// What a link says of the next message that is not used; empty: nothing within a minute.
+Dropped next_news(Link& link) {
+  std::vector<Dropped> news;
+  comes_true([&] {
+    news = link.news();
+    return !news.empty();
+  });
+  return news.empty() ? Dropped{} : news.front();
 }
 
 bool reaches(const Link& link, const std::function<bool(const LinkState&)>& condition) {
@@ -172,18 +192,17 @@ TEST(Link, garbage_ends_its_connection_only) {
 
   Raw endless = library_transform("HandleToReference", at(1, 2, 3));
   endless[42] = 0x80;  // a body of 2⁶³ bytes
-  Raw damaged = library_transform("HandleToReference", at(1, 2, 3));
-  damaged.back() ^= 1;
   const std::string web = "GET / HTTP/1.1\r\nHost: 127.0.0.1:18944\r\nAccept: everything there is, please\r\n\r\n";
   int count = 0;
-  for (const Raw& bytes : {endless, damaged, Raw(web.begin(), web.end()), Raw(1000, 0xA5)}) {
+  for (const Raw& bytes : {endless, Raw(web.begin(), web.end()), Raw(1000, 0xA5)}) {
     Peer bad = Peer::to(link->state().port);
     bad.send(bytes);
     EXPECT_TRUE(bad.closes());
     ++count;
     EXPECT_TRUE(reaches(*link, [&](const auto& s) { return s.garbage == count && s.connections == 1; }));
   }
-  EXPECT_NE(link->state().problem.find("version"), std::string::npos) << link->state().problem;
+  EXPECT_NE(link->state().problem.find("no header of OpenIGTLink"), std::string::npos) << link->state().problem;
+  EXPECT_EQ(link->state().not_used, count);
   EXPECT_TRUE(good.next("TRANSFORM", "NeedleTipToReference"));
   EXPECT_EQ(link->state().poses, 0);
 }
@@ -203,14 +222,157 @@ TEST(Link, a_message_that_never_ends_is_not_waited_for) {
 TEST(Link, unknown_messages_pass) {
   const auto link = opened(any_port());
   Peer peer = Peer::to(link->state().port);
-  auto text = ::igtl::StringMessage::New();
-  text->SetDeviceName("Command");
-  text->SetString("hello");
-  for (int k = 0; k < 10; ++k) peer.send(packed(*text));
+  for (int k = 0; k < 10; ++k) peer.send(text_message("Command", "hello"));
   peer.send(library_transform("ToolToReference", at(1, 2, 3)));
   peer.send(library_transform("HandleToReference", at(1, 2, 3)));
-  EXPECT_TRUE(reaches(*link, [](const auto& s) { return s.poses == 1 && s.other_messages == 11; }));
+  EXPECT_TRUE(reaches(*link, [](const auto& s) { return s.poses == 1 && s.not_used == 11; }));
   EXPECT_EQ(link->state().garbage, 0);
+}
+
+TEST(Link, what_is_not_used_is_told_of_with_its_sender_and_a_cure) {
+  const auto link = opened(any_port());
+  Peer peer = Peer::to(link->state().port);
+  const auto told = [&](const Raw& bytes, const std::string& what, const std::string& cure) {
+    peer.send(bytes);
+    const Dropped dropped = next_news(*link);
+    EXPECT_NE(dropped.what.find(what), std::string::npos) << dropped.what;
+    EXPECT_NE(dropped.what.find(" from 127.0.0.1:"), std::string::npos) << dropped.what;
+    EXPECT_NE(dropped.cure.find(cure), std::string::npos) << dropped.cure;
+    EXPECT_EQ(dropped.count, 1);
+  };
+  Raw unsealed = library_transform("HandleToReference", at(1, 2, 3));
+  put(unsealed, 50, 0, 8);
+  told(unsealed, "TRANSFORM 'HandleToReference'", "--igtl-no-checksum");
+  Raw newer = library_transform("HandleToReference", at(1, 2, 3));
+  put(newer, 0, 3, 2);
+  told(newer, "header has version 3", "version 1 or 2");
+  told(library_transform("HandleToReference", {}), "no rigid motion", "rotation and translation");
+  auto nan = at(1, 2, 3);
+  nan[9] = std::numeric_limits<float>::quiet_NaN();
+  told(library_transform("StylusToReference", nan), "no pose with this name", "HandleToReference");
+  told(text_message("Greeting", "hello"), "no text with this name", "Stylet");
+  Raw other = text_message("HandleToReference", "hello");
+  std::memcpy(other.data() + 2, "SENSOR", 6);
+  told(other, "SENSOR 'HandleToReference'", "TRANSFORM");
+  told(text_message("Stylet", std::string(1001, 'x')), "longer than 1000 bytes", "shorter");
+  EXPECT_TRUE(peer.next("STRING", "Stylet", [](const auto& m) { return text_of(m).starts_with("refused: "); }));
+  peer.send(unsealed);
+  EXPECT_TRUE(reaches(*link, [](const auto& s) { return s.not_used == 8; }));
+  EXPECT_TRUE(link->news().empty()) << "the second of a kind is told of later";
+  EXPECT_EQ(link->state().poses, 0);
+  EXPECT_EQ(link->state().connections, 1) << "none of them ends the connection";
+  const Raw whole = library_transform("HandleToReference", at(1, 2, 3));
+  peer.send(Raw(whole.begin(), whole.begin() + 80));
+  peer.close();
+  EXPECT_NE(next_news(*link).what.find("ended inside a message"), std::string::npos);
+}
+
+TEST(Link, a_tool_of_tracking_data_moves_the_handle) {
+  const auto link = opened(any_port());
+  Peer peer = Peer::to(link->state().port);
+  peer.send(library_tools("TDATA", at(1, 2, 3)));
+  EXPECT_TRUE(reaches(*link, [](const auto& s) { return s.poses == 1; }));
+  peer.send(library_tools("QTDATA", at(1, 2, 3)));
+  EXPECT_TRUE(reaches(*link, [](const auto& s) { return s.poses == 2 && s.not_used == 0; }));
+  // The name of a message with one tool counts too.
+  Raw only = library_tools("TDATA", at(1, 2, 3));
+  only.resize(58 + 70);
+  std::memcpy(only.data() + 14, "HandleToReference", 18);
+  seal(only);
+  peer.send(only);
+  EXPECT_TRUE(reaches(*link, [](const auto& s) { return s.poses == 3; }));
+  std::memcpy(only.data() + 14, "SomethingElse", 14);
+  peer.send(only);
+  const Dropped dropped = next_news(*link);
+  EXPECT_NE(dropped.what.find("its tools ('Stylus')"), std::string::npos) << dropped.what;
+}
+
+TEST(Link, commands_are_given_and_answered) {
+  const auto link = opened(any_port());
+  Peer peer = Peer::to(link->state().port);
+  const auto given = [&] {
+    std::vector<GivenCommand> commands;
+    comes_true([&] {
+      commands = link->take_commands();
+      return !commands.empty();
+    });
+    return commands.empty() ? GivenCommand{} : commands.front();
+  };
+  peer.send(text_message("Stylet", "hole\nD4 \xC3"));
+  const GivenCommand text = given();
+  EXPECT_EQ(text.text, "hole D4 \uFFFD");
+  link->answer(text, "");
+  EXPECT_TRUE(peer.next("STRING", "Stylet", [](const auto& m) { return text_of(m) == "done: hole D4 \uFFFD"; }));
+
+  peer.send(command("Stylet", 70'001, "reset", ""));
+  const GivenCommand named = given();
+  EXPECT_EQ(named.text, "reset") << "without a text, the name is the command";
+  link->answer(named, "");
+  link->answer(named, "it is tired");
+  const auto answer = peer.next("RTS_COMMAND", "Stylet");
+  ASSERT_TRUE(answer);
+  ASSERT_EQ(answer->body.size(), 138U + 11U);
+  EXPECT_EQ(Raw(answer->body.begin(), answer->body.begin() + 4), (Raw{0, 1, 0x11, 0x71}));
+  EXPECT_EQ(std::string(reinterpret_cast<const char*>(answer->body.data()) + 4), "reset");
+  EXPECT_EQ(std::string(answer->body.begin() + 138, answer->body.end()), "done: reset");
+  const auto second = peer.next("RTS_COMMAND", "Stylet");
+  ASSERT_TRUE(second) << "no answer replaces another one";
+  EXPECT_EQ(std::string(second->body.begin() + 138, second->body.end()), "refused: it is tired");
+  peer.send(text_message("Stylet", "refused: it is tired"));
+  EXPECT_NE(next_news(*link).what.find("the answer to a command"), std::string::npos) << "an answer is not answered";
+
+  for (int k = 0; k < 17; ++k) peer.send(text_message("Stylet", "reset"));
+  EXPECT_NE(next_news(*link).what.find("too many commands"), std::string::npos);
+  EXPECT_EQ(link->take_commands().size(), 16U);
+  link->answer({.text = "reset", .connection = 99}, "nobody hears it");
+  EXPECT_TRUE(reaches(*link, [](const auto& s) { return s.connections == 1 && s.not_used == 2; }));
+}
+
+TEST(Link, every_damaged_message_is_used_or_counted) {
+  const auto link = opened(any_port());
+  std::mt19937 random(11);
+  const auto number = [&random](std::size_t below) {
+    return std::uniform_int_distribution<std::size_t>(0, below - 1)(random);
+  };
+  const std::vector<Raw> whole{library_transform("HandleToReference", at(1, 2, 3)),
+                               library_transform("StepperToReference", at(1, 2, 3)),
+                               library_tools("TDATA", at(1, 2, 3)),
+                               library_tools("QTDATA", at(1, 2, 3)),
+                               text_message("Stylet", "reset"),
+                               command("Stylet", 1, "hole", "hole D4")};
+  Peer peer = Peer::to(link->state().port);
+  std::int64_t sent = 0;
+  std::int64_t commands = 0;
+  for (int round = 0; round < 2000; ++round) {
+    Raw bytes = whole[number(whole.size())];
+    // Every field but the time and the length, which is that of the bytes.
+    for (std::size_t k = 0, changes = number(3); k < changes; ++k) {
+      const std::size_t where = number(4);
+      if (where == 0) bytes[1] = static_cast<std::uint8_t>(1 + number(4));
+      if (where == 1) bytes[2] = static_cast<std::uint8_t>('A' + number(26));
+      if (where == 2) bytes[14 + number(4)] = static_cast<std::uint8_t>(' ' + number(200));
+      if (where == 3) bytes[50 + number(bytes.size() - 50)] = static_cast<std::uint8_t>(number(256));
+    }
+    if (number(4) == 0) bytes.resize(58 + number(bytes.size() - 57));
+    if (number(2) == 0) seal(bytes);
+    put(bytes, 42, bytes.size() - 58, 8);
+    ASSERT_TRUE(peer.send(bytes));
+    ++sent;
+    commands += static_cast<std::int64_t>(link->take_commands().size());
+  }
+  EXPECT_TRUE(reaches(*link,
+                      [&](const auto& s) {
+                        commands += static_cast<std::int64_t>(link->take_commands().size());
+                        return s.poses + s.probe_poses + s.not_used + commands == sent;
+                      }))
+      << link->state().poses << " + " << link->state().probe_poses << " + " << link->state().not_used << " + "
+      << commands << " of " << sent;
+  EXPECT_GT(link->state().poses, 100);
+  EXPECT_GT(link->state().not_used, 500);
+  EXPECT_EQ(link->state().garbage, 0);
+  for (const Dropped& dropped : link->news()) {
+    EXPECT_EQ(printable(dropped.what), dropped.what);
+  }
 }
 
 TEST(Link, more_than_the_limit_are_turned_away) {

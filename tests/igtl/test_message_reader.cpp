@@ -17,19 +17,10 @@
 using namespace stylet;
 using namespace stylet::igtl;
 using namespace stylet::test;
+using namespace std::string_literals;
 using Kind = Incoming::Kind;
 
 namespace {
-
-void put(Raw& to, std::size_t at, std::uint64_t value, std::size_t bytes) {
-  for (std::size_t k = 0; k < bytes; ++k) to.at(at + k) = static_cast<std::uint8_t>(value >> (8 * (bytes - 1 - k)));
-}
-
-/// Writes length and checksum of the body into the header.
-void seal(Raw& message) {
-  put(message, 42, message.size() - 58, 8);
-  put(message, 50, crc64(message.data() + 58, message.size() - 58, 0), 8);
-}
 
 struct Read {
   std::vector<Incoming> messages;
@@ -51,6 +42,15 @@ Read read(const Raw& bytes, std::size_t piece = 1 << 20, MessageReader reader = 
 Raw operator+(Raw a, const Raw& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;
+}
+
+/// The pose of a message that has one.
+RasMatrix pose_in(const Incoming& m) { return m.poses.at(0).matrix.value(); }
+
+/// Why the only message is refused; empty if it is not.
+Refusal refusal_of(const Read& r) {
+  if (!r.result || r.messages.size() != 1 || r.messages[0].kind != Kind::refused) return {};
+  return r.messages[0].refusal;
 }
 
 Raw library_string(const char* name) {
@@ -87,8 +87,9 @@ TEST(MessageReader, reads_what_the_library_sends_however_it_is_cut) {
     ASSERT_EQ(r.messages.size(), 4U) << piece;
     EXPECT_EQ(r.messages[0].kind, Kind::pose);
     EXPECT_EQ(r.messages[0].name, "HandleToReference");
-    EXPECT_EQ(r.messages[0].matrix, kMatrix);
-    EXPECT_EQ(r.messages[1].kind, Kind::other);
+    EXPECT_EQ(pose_in(r.messages[0]), kMatrix);
+    EXPECT_EQ(r.messages[1].kind, Kind::text);
+    EXPECT_EQ(r.messages[1].text, "some text");
     EXPECT_EQ(r.messages[2].kind, Kind::status);
     EXPECT_EQ(r.messages[2].name, "Tracker");
     EXPECT_EQ(r.messages[2].code, 13);
@@ -101,16 +102,16 @@ TEST(MessageReader, reads_version_2_headers_past_their_metadata) {
     const Read r = read(version_2(library_transform("Handle", kMatrix), metadata));
     ASSERT_TRUE(r.result) << r.result.error().message();
     ASSERT_EQ(r.messages.size(), 1U);
-    EXPECT_EQ(r.messages[0].matrix, kMatrix);
+    EXPECT_EQ(pose_in(r.messages[0]), kMatrix);
   }
   Raw wrong = version_2(library_transform("Handle", kMatrix), 4);
   put(wrong, 62, 0xFFFFFFFF, 4);
   seal(wrong);
-  EXPECT_FALSE(read(wrong).result) << "more metadata than body";
+  EXPECT_EQ(refusal_of(read(wrong)).kind, "length"s) << "more metadata than body";
   wrong = version_2(library_transform("Handle", kMatrix), 4);
   put(wrong, 58, 3, 2);
   seal(wrong);
-  EXPECT_FALSE(read(wrong).result) << "an extended header shorter than itself";
+  EXPECT_EQ(refusal_of(read(wrong)).kind, "length"s) << "an extended header shorter than itself";
 }
 
 TEST(MessageReader, messages_without_a_body_pass) {
@@ -132,8 +133,9 @@ TEST(MessageReader, a_length_beyond_the_limit_is_refused_before_anything_is_kept
     }
   }
   Raw transform = library_transform("Handle", kMatrix);
-  put(transform, 42, MessageReader::kKept + 1, 8);
-  EXPECT_FALSE(read(transform).result) << "an image may be that long, a matrix may not";
+  transform.resize(58 + MessageReader::kKept + 1);
+  seal(transform);
+  EXPECT_EQ(refusal_of(read(transform)).kind, "length"s) << "an image may be that long, a matrix may not";
   Raw image = library_string("Image");
   put(image, 42, 1000, 8);
   EXPECT_TRUE(read(image, 1 << 20, MessageReader({.longest = 1000})).result);
@@ -145,9 +147,7 @@ TEST(MessageReader, any_wrong_bit_of_a_body_is_seen) {
   for (std::size_t bit = 58 * 8; bit < good.size() * 8; ++bit) {
     Raw bad = good;
     bad[bit / 8] ^= static_cast<std::uint8_t>(1U << (bit % 8));
-    const Read r = read(bad);
-    ASSERT_FALSE(r.result) << "bit " << bit;
-    ASSERT_TRUE(r.messages.empty());
+    ASSERT_EQ(refusal_of(read(bad)).kind, "checksum"s) << "bit " << bit;
   }
 }
 
@@ -156,13 +156,13 @@ TEST(MessageReader, bodies_of_the_wrong_length_are_refused) {
     Raw transform = library_transform("Handle", kMatrix);
     transform.resize(58 + length);
     seal(transform);
-    EXPECT_FALSE(read(transform).result) << length;
+    EXPECT_EQ(refusal_of(read(transform)).kind, "length"s) << length;
   }
   for (const std::size_t length : {0, 1, 29}) {
     Raw status = library_status("Tracker", 1);
     status.resize(58 + length);
     seal(status);
-    EXPECT_FALSE(read(status).result) << length;
+    EXPECT_EQ(refusal_of(read(status)).kind, "length"s) << length;
   }
 }
 
@@ -182,15 +182,34 @@ TEST(MessageReader, a_message_cut_short_is_no_message) {
   }
 }
 
+TEST(MessageReader, a_message_that_is_refused_ends_only_itself) {
+  Raw unsealed = library_transform("Handle", kMatrix);
+  put(unsealed, 50, 0, 8);
+  Raw newer = library_transform("Handle", kMatrix);
+  put(newer, 0, 3, 2);
+  Raw cut = library_transform("Handle", kMatrix);
+  cut.pop_back();
+  seal(cut);
+  const Raw good = library_transform("Handle", kMatrix);
+  for (const std::size_t piece : {std::size_t{1}, std::size_t{13}, std::size_t{1000}}) {
+    const Read r = read(unsealed + good + newer + good + cut + good, piece);
+    ASSERT_TRUE(r.result) << r.result.error().message();
+    std::string kinds;
+    for (const Incoming& m : r.messages) kinds += m.kind == Kind::refused ? m.refusal.kind + "; "s : "pose; ";
+    EXPECT_EQ(kinds, "checksum; pose; header version; pose; length; pose; ");
+  }
+}
+
 TEST(MessageReader, no_bytes_whatever_do_harm) {
   std::mt19937 random(7);
   const auto number = [&random](std::size_t below) {
     return std::uniform_int_distribution<std::size_t>(0, below - 1)(random);
   };
   const Raw good = library_transform("Handle", kMatrix) + library_status("Tracker", 1) + library_string("Text") +
-                   version_2(library_transform("Handle", kMatrix), 20);
+                   version_2(library_transform("Handle", kMatrix), 20) + library_tools("TDATA", kMatrix) +
+                   library_tools("QTDATA", kMatrix) + command("Stylet", 7, "reset", "");
   int refused = 0;
-  for (int round = 0; round < 5000; ++round) {
+  for (int round = 0; round < 10'000; ++round) {
     Raw bytes = good;
     const bool sealed = round % 3 == 0;
     if (round % 10 == 9) {
@@ -201,14 +220,20 @@ TEST(MessageReader, no_bytes_whatever_do_harm) {
         bytes[number(sealed ? 106 : bytes.size())] = static_cast<std::uint8_t>(number(256));
     }
     if (sealed && bytes.size() >= 106) put(bytes, 50, crc64(bytes.data() + 58, 48, 0), 8);
-    const Read r = read(bytes, 1 + number(200));
-    if (!r.result) ++refused;
+    const Read r = read(bytes, 1 + number(200), MessageReader({.checksums = round % 2 == 0}));
+    refused += r.result ? 0 : 1;
     for (const Incoming& m : r.messages) {
       ASSERT_LE(m.name.size(), 20U);
-      (void)pose_of(m.matrix);
+      ASSERT_EQ(m.kind == Kind::refused, !m.refusal.why.empty()) << "a refusal has a reason";
+      ASSERT_EQ(m.kind == Kind::refused, !m.refusal.cure.empty()) << "and a cure";
+      refused += m.kind == Kind::refused ? 1 : 0;
+      for (const ToolPose& tool : m.poses) {
+        ASSERT_LE(tool.name.size(), 20U);
+        if (tool.matrix) (void)pose_of(*tool.matrix);
+      }
     }
   }
-  EXPECT_GT(refused, 1000);
+  EXPECT_GT(refused, 2000);
 }
 
 namespace {
@@ -238,41 +263,74 @@ TEST(MessageReader, a_position_with_a_quaternion_is_a_pose) {
     ASSERT_EQ(r.messages.size(), 1U);
     EXPECT_EQ(r.messages[0].kind, Kind::pose);
     EXPECT_EQ(r.messages[0].type, "POSITION");
-    const Eigen::Map<const Eigen::Matrix<float, 3, 4>> matrix(r.messages[0].matrix.data());
+    const RasMatrix pose = pose_in(r.messages[0]);
+    const Eigen::Map<const Eigen::Matrix<float, 3, 4>> matrix(pose.data());
     EXPECT_LT((matrix.leftCols<3>() - q.toRotationMatrix()).norm(), 1e-5F);
     EXPECT_EQ(matrix.col(3), Eigen::Vector3f(10, 20, -30));
   }
 }
 
-TEST(MessageReader, a_position_without_an_orientation_is_no_pose) {
+TEST(MessageReader, a_position_without_an_orientation_has_no_matrix) {
   const Read r = read(library_position("HandleToReference", Eigen::Quaternionf::Identity(), 12));
   ASSERT_TRUE(r.result);
-  EXPECT_EQ(r.messages.at(0).kind, Kind::other);
-  EXPECT_EQ(r.messages[0].type, "POSITION");
+  EXPECT_EQ(r.messages.at(0).poses.at(0).name, "HandleToReference");
+  EXPECT_FALSE(r.messages[0].poses[0].matrix);
   const Read stretched = read(library_position("HandleToReference", Eigen::Quaternionf(2, 0, 0, 0), 28));
-  EXPECT_EQ(stretched.messages.at(0).kind, Kind::other);
+  EXPECT_FALSE(stretched.messages.at(0).poses.at(0).matrix);
+}
+
+TEST(MessageReader, tracking_data_have_a_pose_for_each_tool) {
+  for (const char* type : {"TDATA", "QTDATA"}) {
+    const Read r = read(library_tools(type, kMatrix));
+    ASSERT_TRUE(r.result) << r.result.error().message();
+    ASSERT_EQ(r.messages.at(0).kind, Kind::pose);
+    EXPECT_EQ(r.messages[0].name, "Tracker");
+    ASSERT_EQ(r.messages[0].poses.size(), 2U);
+    EXPECT_EQ(r.messages[0].poses[0].name, "Stylus");
+    EXPECT_EQ(r.messages[0].poses[1].name, "HandleToReference");
+    const RasMatrix pose = r.messages[0].poses[1].matrix.value();
+    for (std::size_t k = 0; k < pose.size(); ++k) EXPECT_NEAR(pose[k], kMatrix[k], 1e-6) << type << " " << k;
+  }
+  Raw odd = library_tools("TDATA", kMatrix);
+  odd.pop_back();
+  seal(odd);
+  EXPECT_EQ(refusal_of(read(odd)).kind, "length"s);
+}
+
+TEST(MessageReader, a_command_has_its_number_its_name_and_its_text) {
+  for (const std::size_t metadata : {std::size_t{0}, std::size_t{9}}) {
+    const Read r = read(version_2(command("Stylet", 70'000, "Choose", "hole D4"), metadata));
+    ASSERT_TRUE(r.result);
+    ASSERT_EQ(r.messages.at(0).kind, Kind::text);
+    EXPECT_EQ(r.messages[0].command_id, 70'000U);
+    EXPECT_EQ(r.messages[0].command_name, "Choose");
+    EXPECT_EQ(r.messages[0].text, "hole D4");
+  }
+  Raw longer = command("Stylet", 1, "Choose", "hole D4");
+  put(longer, 58 + 134, 8, 4);
+  seal(longer);
+  EXPECT_EQ(refusal_of(read(longer)).kind, "length"s) << "a text beyond the end of the message";
 }
 
 TEST(MessageReader, a_wrong_checksum_is_taken_where_checksums_are_off) {
   Raw bytes = library_transform("HandleToReference", kMatrix);
   put(bytes, 50, 0, 8);
-  const Read refused = read(bytes);
-  ASSERT_FALSE(refused.result);
-  const std::string why = refused.result.error().message();
-  EXPECT_NE(why.find("TRANSFORM 'HandleToReference' whose body does not match its checksum, which is 0"),
-            std::string::npos)
-      << why;
+  const Refusal refusal = refusal_of(read(bytes));
+  EXPECT_EQ(refusal.why, "its checksum is 0");
+  EXPECT_NE(refusal.cure.find("--igtl-no-checksum"), std::string::npos) << refusal.cure;
+  put(bytes, 50, 1, 8);
+  EXPECT_EQ(refusal_of(read(bytes)).why, "its body does not match its checksum");
   const Read taken = read(bytes, 1 << 20, MessageReader({.checksums = false}));
   ASSERT_TRUE(taken.result);
-  EXPECT_EQ(taken.messages.at(0).matrix, kMatrix);
+  EXPECT_EQ(pose_in(taken.messages.at(0)), kMatrix);
 }
 
 TEST(MessageReader, another_version_of_the_header_is_refused_with_the_versions_that_are_read) {
   Raw bytes = library_transform("HandleToReference", kMatrix);
   put(bytes, 0, 3, 2);
-  const std::string why = read(bytes).result.error().message();
-  EXPECT_NE(why.find("a header of version 3, which is not read"), std::string::npos) << why;
-  EXPECT_NE(why.find("header version 1 or 2"), std::string::npos) << why;
+  const Refusal refusal = refusal_of(read(bytes));
+  EXPECT_EQ(refusal.why, "its header has version 3, which is not read");
+  EXPECT_NE(refusal.cure.find("header version 1 or 2"), std::string::npos) << refusal.cure;
 }
 
 TEST(MessageReader, messages_of_other_programs_are_taken_or_refused_with_the_reason) {
@@ -287,14 +345,9 @@ TEST(MessageReader, messages_of_other_programs_are_taken_or_refused_with_the_rea
   const Read position = read(bytes_of("k16_position.bin"));
   ASSERT_TRUE(position.result) << position.result.error().message();
   EXPECT_EQ(position.messages.at(0).kind, Kind::pose);
-  const Read unsealed = read(bytes_of("k16_transform_v1_crc0.bin"));
-  ASSERT_FALSE(unsealed.result);
-  EXPECT_NE(unsealed.result.error().message().find("checksum"), std::string::npos);
+  EXPECT_EQ(refusal_of(read(bytes_of("k16_transform_v1_crc0.bin"))).kind, "checksum"s);
   const Read taken = read(bytes_of("k16_transform_v1_crc0.bin"), 1 << 20, MessageReader({.checksums = false}));
   ASSERT_TRUE(taken.result) << taken.result.error().message();
   EXPECT_EQ(taken.messages.at(0).kind, Kind::pose);
-  const Read newer = read(bytes_of("k16_transform_header_v3.bin"));
-  ASSERT_FALSE(newer.result);
-  EXPECT_NE(newer.result.error().message().find("3"), std::string::npos) << newer.result.error().message();
-  EXPECT_EQ(newer.result.error().message().find("1 to 3"), std::string::npos) << newer.result.error().message();
+  EXPECT_EQ(refusal_of(read(bytes_of("k16_transform_header_v3.bin"))).kind, "header version"s);
 }

@@ -9,6 +9,7 @@ using namespace stylet;
 using namespace stylet::igtl;
 using std::chrono::milliseconds;
 using stylet::test::at;
+using Heard = PoseInput::Heard;
 
 namespace {
 
@@ -18,19 +19,9 @@ struct Handle {
   PoseInput::Clock::time_point now{};
 
   Handle() { input.feed(channel); }
-  void pose(ConnectionId from, const RasMatrix& m, const std::string& name = "Handle") {
-    Incoming message;
-    message.kind = Incoming::Kind::pose;
-    message.name = name;
-    message.matrix = m;
-    input.hear(from, message, now);
-  }
+  PoseInput::Heard pose(ConnectionId from, const RasMatrix& m) { return input.hear_pose(from, m, now); }
   void status(ConnectionId from, std::uint16_t code, const std::string& name = "Tracker") {
-    Incoming message;
-    message.kind = Incoming::Kind::status;
-    message.name = name;
-    message.code = code;
-    input.hear(from, message, now);
+    input.hear_status(from, name, code);
   }
   /// x (LPS) of the pose that the loop would read; empty if the pose is not valid.
   std::optional<double> x() {
@@ -44,22 +35,19 @@ struct Handle {
 
 }  // namespace
 
-TEST(PoseInput, takes_the_transform_of_its_name_as_lps) {
+TEST(PoseInput, takes_a_pose_as_lps) {
   Handle h;
   EXPECT_FALSE(h.x());
-  h.pose(1, at(-3, -4, 5), "SomethingElse");
-  EXPECT_FALSE(h.x());
-  h.pose(1, at(-3, -4, 5));
+  EXPECT_EQ(h.pose(1, at(-3, -4, 5)), Heard::used);
   EXPECT_EQ(h.x(), 3.0);
   EXPECT_EQ(h.channel->value().pose.origin, (Triple{3, 4, 5}));
   EXPECT_EQ(h.input.counts().poses, 1);
-  EXPECT_EQ(h.input.counts().other_messages, 1);
 }
 
 TEST(PoseInput, a_matrix_that_is_no_rigid_motion_loses_the_handle_until_the_next_good_one) {
   Handle h;
   h.pose(1, at(-3, 0, 0));
-  h.pose(1, RasMatrix{});
+  EXPECT_EQ(h.pose(1, RasMatrix{}), Heard::no_rigid_motion);
   EXPECT_FALSE(h.x());
   EXPECT_EQ(h.input.counts().unusable, 1);
   h.pose(1, at(-4, 0, 0));
@@ -71,7 +59,7 @@ TEST(PoseInput, a_status_that_is_not_ok_loses_it_until_the_same_name_is_ok) {
   h.pose(1, at(-3, 0, 0));
   h.status(1, 13, "Tracker");
   EXPECT_FALSE(h.x());
-  h.pose(1, at(-4, 0, 0));
+  EXPECT_EQ(h.pose(1, at(-4, 0, 0)), Heard::sender_not_ok);
   EXPECT_FALSE(h.x()) << "poses go on all the same";
   h.status(1, 1, "Robot");
   h.pose(1, at(-4, 0, 0));
@@ -101,7 +89,7 @@ TEST(PoseInput, any_number_of_complaints_takes_little_memory_and_stays_a_complai
 TEST(PoseInput, one_connection_at_a_time_has_the_handle) {
   Handle h;
   h.pose(1, at(-3, 0, 0));
-  h.pose(2, at(-9, 0, 0));
+  EXPECT_EQ(h.pose(2, at(-9, 0, 0)), Heard::of_other);
   EXPECT_EQ(h.x(), 3.0);
   EXPECT_EQ(h.input.counts().of_others, 1);
   h.now += milliseconds(900);

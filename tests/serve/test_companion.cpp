@@ -5,6 +5,7 @@
 #include "stylet/realtime/latest_value.hpp"
 
 #include <mutex>
+#include <utility>
 
 using namespace stylet;
 using namespace stylet::test;
@@ -59,6 +60,23 @@ class Friend final : public serve::Companion {
     most_mm = std::max(most_mm, static_cast<double>(displacement.cwiseAbs().maxCoeff()));
   }
 
+  std::vector<serve::Notice> news() override {
+    const std::scoped_lock lock(mutex_);
+    return std::exchange(untold, {});
+  }
+  [[nodiscard]] std::int64_t not_used() const override { return 3; }
+  std::vector<serve::GivenCommand> take_commands() override {
+    const std::scoped_lock lock(mutex_);
+    std::vector<serve::GivenCommand> commands;
+    for (const std::string& text : std::exchange(given, {})) {
+      commands.push_back({text, [this](const std::optional<serve::Notice>& refused) {
+                            const std::scoped_lock answering(mutex_);
+                            answers.push_back(refused ? refused->text : "done");
+                          }});
+    }
+    return commands;
+  }
+
   /// Sets the hand's pose; without a pose, the hand is not tracked.
   void hand(const std::optional<Pose>& where) {
     const std::scoped_lock lock(mutex_);
@@ -79,6 +97,8 @@ class Friend final : public serve::Companion {
   PlainPose base;
   double pushes_N = 0.0, most_mm = 0.0;
   std::size_t displaced_nodes = 0;
+  std::vector<serve::Notice> untold;
+  std::vector<std::string> given, answers;
 
  private:
   bool has_hand_;
@@ -98,6 +118,16 @@ struct WithFriend {
   }
   [[nodiscard]] Pose base() const {
     return pose(companion->locked([](const Friend& f) { return f.base; }));
+  }
+  /// Gives a command. @return the answer
+  std::string command(const std::string& text) {
+    const auto answered = companion->locked([&](Friend& f) {
+      f.given.push_back(text);
+      return f.answers.size();
+    });
+    EXPECT_TRUE(
+        client->until([&] { return companion->locked([&](Friend& f) { return f.answers.size() > answered; }); }));
+    return companion->locked([](Friend& f) { return f.answers.back(); });
   }
   [[nodiscard]] std::string problem() const { return client->status.value("device_problem", "?"); }
   /// Moves the handle, one millimetre ahead of the base, until the base is this far from `start` along its axis.
@@ -185,4 +215,54 @@ TEST(Companion, sees_nothing_while_a_recording_is_replayed) {
   client.command(R"({"do":"live"})");
   EXPECT_TRUE(
       client.until([&] { return with.companion->locked([](const Friend& f) { return f.pictures; }) > pictures; }));
+}
+
+TEST(Companion, with_the_hand_starts_again_and_chooses_a_hole) {
+  WithFriend with(true);
+  LiveClient& client = *with.client;
+  const std::string first = client.recording();
+  EXPECT_EQ(with.command("start again"), "done") << "also while a page holds the needle";
+  ASSERT_TRUE(client.until([&] { return client.recording() != first; }));
+  EXPECT_EQ(with.command("hole E3.5"), "done");
+  ASSERT_TRUE(client.until([&] { return client.status.value("hole", "") == "E3.5"; }));
+  EXPECT_NE(with.command("hole Z99").find("Z99"), std::string::npos) << "with the words that a page gets";
+  EXPECT_EQ(with.command("take"), "'take': this command is for pages only");
+  EXPECT_EQ(with.command("seek 1"), "no recording is shown now");
+  ASSERT_TRUE(client.replay(first));
+  EXPECT_EQ(with.command("reset"), "no needle is live now");
+  ASSERT_TRUE(client.back_to_live());
+  EXPECT_TRUE(client.until([&] { return client.status.value("hole", "") == "E3.5"; })) << "as it was";
+}
+
+TEST(Companion, without_the_hand_has_no_command_while_a_page_holds_the_needle) {
+  WithFriend with(false);
+  LiveClient& client = *with.client;
+  const std::string first = client.recording();
+  EXPECT_EQ(with.command("reset"), "a page holds the needle");
+  EXPECT_EQ(client.recording(), first);
+  client.command(R"({"do":"release"})");
+  ASSERT_TRUE(client.until([&] { return !client.status.value("held", true); }));
+  EXPECT_EQ(with.command("reset"), "done");
+  EXPECT_TRUE(client.until([&] { return client.recording() != first; }));
+}
+
+TEST(Companion, tells_pages_and_terminal_what_it_does_not_use) {
+  const auto companion = std::make_shared<Friend>(false);
+  std::mutex mutex;
+  std::vector<std::string> said;
+  const Serving serving([&](serve::ServerSettings& s) {
+    s.session.companion = companion;
+    s.session.say = [&](const std::string& text) {
+      const std::scoped_lock lock(mutex);
+      said.push_back(text);
+    };
+  });
+  const auto client = ready_client(serving);
+  EXPECT_EQ(client->status["companion"]["name"], "a friend");
+  companion->locked([](Friend& f) { f.untold = {{"a message is dropped", "Send a better one"}}; });
+  ASSERT_TRUE(client->until([&] { return client->status["companion"]["newest"] == "a message is dropped"; }));
+  EXPECT_EQ(client->status["companion"]["cure"], "Send a better one");
+  EXPECT_EQ(client->status["companion"]["not_used"], 3);
+  const std::scoped_lock lock(mutex);
+  EXPECT_EQ(said, std::vector<std::string>{"a friend: a message is dropped. Send a better one."});
 }

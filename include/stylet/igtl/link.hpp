@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace stylet::igtl {
 
@@ -24,8 +25,8 @@ struct LinkSettings {
   Role role = Role::server;
   std::string host = "127.0.0.1";                  ///< server: address to listen at; client: host to connect to
   int port = 18944;                                ///< 1…65535; 0 makes a server take any free port
-  std::string input = "HandleToReference";         ///< name of the TRANSFORM with the wanted pose of the base
-  std::string probe_input = "StepperToReference";  ///< name of the TRANSFORM with the wanted pose of the probe
+  std::string input = "HandleToReference";         ///< name of the received pose that the base is to have
+  std::string probe_input = "StepperToReference";  ///< name of the received pose that the probe is to have
   // Device names of the messages that the link sends.
   std::string base = "NeedleBaseToReference";
   std::string tip = "NeedleTipToReference";
@@ -34,12 +35,12 @@ struct LinkSettings {
   std::string surface = "TissueSurface";
   std::string probe = "ProbeToReference";
   std::string image = "Image_Reference";
-  std::string status = "Stylet";
-  double poses_hz = 60.0;    ///< [1/s] 1…1000, rate of the messages with poses and force
-  double surface_hz = 10.0;  ///< [1/s] 0.1…poses_hz, highest rate of the messages with the surface
-  double images_hz = 30.0;   ///< [1/s] 0.1…poses_hz, highest rate of the images
-  double fresh_s = 0.25;     ///< [s] 0.01…10; the force of a picture older than this is not sent
-  bool checksums = true;     ///< whether received messages have to match their checksums; some programs send none
+  std::string status = "Stylet";  ///< also of the received commands and of the answers to them
+  double poses_hz = 60.0;         ///< [1/s] 1…1000, rate of the messages with poses and force
+  double surface_hz = 10.0;       ///< [1/s] 0.1…poses_hz, highest rate of the messages with the surface
+  double images_hz = 30.0;        ///< [1/s] 0.1…poses_hz, highest rate of the images
+  double fresh_s = 0.25;          ///< [s] 0.01…10; the force of a picture older than this is not sent
+  bool checksums = true;          ///< whether received messages have to match their checksums; some programs send none
   /// Whether a server takes processes of this user on this machine without a token. All others need one.
   bool trust_own_processes = true;
   int max_connections = 8;     ///< 1…64, of a server; further connections are refused
@@ -50,22 +51,36 @@ struct LinkSettings {
 
 /// State and counters of a link. The counters start at 0 when the link is opened.
 struct LinkState {
-  int port = 0;                     ///< the port at which it listens, or to which it connects
-  int connections = 0;              ///< open connections
-  bool tracked = false;             ///< the last pose of the handle was usable, and its sender is still connected
-  std::int64_t connected = 0;       ///< connections made in total
-  std::int64_t turned_away = 0;     ///< connections refused: max_connections, or strangers without the token
-  std::int64_t poses = 0;           ///< usable poses of the handle that were received
-  std::int64_t unusable = 0;        ///< received poses that were no rigid motion, or whose sender's STATUS was not OK
-  std::int64_t of_others = 0;       ///< received poses of the handle while another connection had the handle
-  std::int64_t probe_poses = 0;     ///< usable poses of the probe that were received
-  std::int64_t other_messages = 0;  ///< received messages of other types and names
-  std::string unused;     ///< type and name of the last of these that has a pose, or has the name of one; may be empty
-  std::int64_t sent = 0;  ///< messages queued for connections: bundles of poses and force, surfaces, heartbeats
-  std::int64_t dropped = 0;   ///< queued messages that newer ones replaced before they were sent
-  std::int64_t garbage = 0;   ///< connections closed because the received bytes were not OpenIGTLink
-  std::int64_t given_up = 0;  ///< connections closed because they accepted no data
-  std::string problem;        ///< the latest of the problems counted above, in words
+  int port = 0;                  ///< the port at which it listens, or to which it connects
+  int connections = 0;           ///< open connections
+  bool tracked = false;          ///< the last pose of the handle was usable, and its sender is still connected
+  std::int64_t connected = 0;    ///< connections made in total
+  std::int64_t turned_away = 0;  ///< connections refused: max_connections, or strangers without the token
+  std::int64_t poses = 0;        ///< usable poses of the handle that were received
+  std::int64_t unusable = 0;     ///< received poses that were no rigid motion, or whose sender's STATUS was not OK
+  std::int64_t of_others = 0;    ///< received poses of the handle while another connection had the handle
+  std::int64_t probe_poses = 0;  ///< usable poses of the probe that were received
+  std::int64_t not_used = 0;     ///< received messages that were not used, and connections that were closed or refused
+  std::int64_t sent = 0;         ///< messages queued for connections: bundles of poses and force, surfaces, heartbeats
+  std::int64_t dropped = 0;      ///< queued messages that newer ones replaced before they were sent
+  std::int64_t garbage = 0;      ///< connections whose received bytes were not OpenIGTLink, or ended inside a message
+  std::int64_t given_up = 0;     ///< connections closed because they accepted no data
+  std::string problem;           ///< the latest trouble in words; may be empty
+};
+
+/// Messages or connections of one kind that a link does not use.
+struct Dropped {
+  std::string what;        ///< the newest: type, name, sender and reason, as a sentence without its full stop
+  std::string cure;        ///< a sentence without its full stop
+  std::int64_t count = 0;  ///< so far
+};
+
+/// A command that a connected program has given, as a STRING or a COMMAND.
+struct GivenCommand {
+  std::string text;  ///< as printable() gives it; at most 1,000 bytes were received
+  std::uint64_t connection = 0;
+  std::optional<std::uint32_t> command_id;  ///< of a COMMAND
+  std::string command_name;                 ///< of a COMMAND
 };
 
 /// Sends a running simulation to programs that speak OpenIGTLink, such as 3D Slicer and PLUS, and receives the pose of
@@ -106,6 +121,17 @@ class Link {
   /// for the handle, one sender at a time moves the probe. Call it from one thread only, which may be a real-time
   /// thread.
   [[nodiscard]] std::optional<Pose> probe_pose();
+
+  /// The messages and connections that were not used and are to be told at this moment: of each kind the first at once,
+  /// and more of them seldom. Call it often, from one thread that is no real-time thread.
+  std::vector<Dropped> news();
+  /// The commands received since the last call; at most 16 wait. Each is to be answered. Call it from any thread but a
+  /// real-time thread.
+  std::vector<GivenCommand> take_commands();
+  /// Answers the program that gave a command, if it is still connected: with a STRING, or with an RTS_COMMAND to a
+  /// COMMAND. Call it from any thread but a real-time thread.
+  /// @param refused why it is not carried out; empty: it has been carried out; at most 2,000 bytes are sent
+  void answer(const GivenCommand& command, const std::string& refused);
 
   /// The state that the link's thread stored last, every 1/poses_hz. Call it from any thread but a real-time thread.
   [[nodiscard]] LinkState state() const;

@@ -6,11 +6,21 @@
 #include "stylet/serve/image_picture.hpp"
 #include "stylet/serve/picture.hpp"
 
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace stylet::serve {
+
+/// A command in words, or in the JSON of docs/live_protocol.md.
+struct GivenCommand {
+  std::string text;
+  /// Tells the program that has given it why it is refused; empty: it has been carried out. Is to be called once.
+  std::function<void(const std::optional<Notice>& refused)> answer;
+};
 
 /// Another program that is connected besides the pages, for example over OpenIGTLink: it is shown a live session and
 /// may move the needle and the probe. It stays connected when a reset, another hole or another case starts a new
@@ -26,9 +36,13 @@ class Companion {
   [[nodiscard]] virtual std::unique_ptr<Device> device() = 0;
   /// Why the device gives no usable pose, in words.
   [[nodiscard]] virtual std::string why_no_pose() const = 0;
-  /// Trouble with the connection, or what is received and not used, in one sentence for the terminal; empty:
-  /// nothing. It stays until there is something newer.
-  [[nodiscard]] virtual std::string trouble() const { return {}; }
+  /// What it has not used of what it has received, and has to be told of now on the terminal and on the pages, in
+  /// sentences without their full stops.
+  virtual std::vector<Notice> news() { return {}; }
+  /// How many messages and connections it has not used.
+  [[nodiscard]] virtual std::int64_t not_used() const { return 0; }
+  /// The commands that it has been given since the last call.
+  virtual std::vector<GivenCommand> take_commands() { return {}; }
 
   /// Receives the open case, undeformed.
   virtual void show(const Scene& scene) = 0;

@@ -80,6 +80,11 @@ struct SessionStatus {
   std::vector<std::string> inside;  ///< regions that contain the tip (the first) or the shaft
   std::string device;               ///< device that moves the needle: "page", or a companion's name
   std::string device_problem;       ///< why the device does not move the needle; empty: it moves the needle
+  struct Companion {
+    std::string name;           ///< empty: there is no companion
+    std::int64_t not_used = 0;  ///< messages and connections that it has not used
+    Notice newest;              ///< the newest of these, with its cure; may be empty
+  } companion;
   struct Recording {
     std::string name;
     double seconds = 0.0;

@@ -169,6 +169,8 @@ export class Session implements ConnectionListener {
   private takeStatus(status: Status): void {
     // In a replay, the hole of the replayed scene is shown, not the hole of the live needle.
     if (status.mode === 'replay') status.hole = this.scene?.insertions[0]?.hole ?? '';
+    const { newest, cure } = status.companion ?? { newest: '', cure: '' };
+    if (newest && newest !== this.status?.companion?.newest) this.notify(`${status.companion?.name}: ${newest}.`, cure && `${cure}.`);
     this.status = status;
     const stopped = status.you_hold === true && status.hand_stopped === true;
     if (stopped && !this.handStopped) {

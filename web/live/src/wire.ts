@@ -53,6 +53,7 @@ export interface Status {
   stage?: string; fraction?: number | null; message?: string; cure?: string;
   mode?: 'live' | 'replay'; paused?: boolean; insertion?: string; hole?: string; inside?: string[];
   you_hold?: boolean; hand_stopped?: boolean; held?: boolean; asking?: number; you_ask?: boolean; viewers?: number; device?: string; device_problem?: string;
+  companion?: { name: string; not_used: number; newest: string; cure: string };
   recording?: { name: string; seconds: number; problem?: string; warning?: string } | null;
   replay?: { name: string; time_s: number; duration_s: number; playing: boolean; rate: number } | null;
   interrupted?: Interrupted | null;  // an implant of the open case that was begun and not finished

@@ -13,6 +13,7 @@ export class Header {
   private readonly take: HTMLButtonElement;
   private readonly release: HTMLButtonElement;
   private readonly recording = element('span', 'recording');
+  private readonly companion = element('span', 'companion');
   private readonly notice = element('span', 'not-medical');
 
   constructor(root: HTMLElement, private readonly session: Session, hand: HandControl, actions: HeaderActions) {
@@ -34,7 +35,7 @@ export class Header {
     const notice = element('strong', '', 'Not a medical device');
     this.notice.append(notice);
     this.notice.title = 'A simulation for research and teaching. Do not base decisions about a patient on it.';
-    root.append(name, this.cases, this.holder, this.recording, this.notice, ways);
+    root.append(name, this.cases, this.holder, this.recording, this.companion, this.notice, ways);
     session.on('scene', (scene) => {
       this.cases.replaceChildren(...scene.cases.map((c) => new Option(c)));
       this.cases.selectedIndex = scene.case;
@@ -76,6 +77,10 @@ export class Header {
     this.recording.classList.toggle('problem', !!unrecorded || !!soon);
     this.write(this.recording, unrecorded ? `Not recording: ${unrecorded}` : recording ? `Recording ${recording.seconds.toFixed(0)} s${soon}` : '');
     this.recording.title = recording?.name ?? '';
+    const companion = status?.companion;
+    this.companion.hidden = !connected || !companion?.not_used;
+    this.write(this.companion, companion ? `${companion.name}: ${companion.not_used} not used` : '');
+    this.companion.title = companion?.newest ? `${companion.newest}. ${companion.cure}.` : '';
   }
 
   private write(where: HTMLElement, text: string): void {
