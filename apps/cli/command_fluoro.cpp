@@ -5,6 +5,7 @@
 #include "validators.hpp"
 
 #include "stylet/imaging/fluoroscope.hpp"
+#include "stylet/io/files.hpp"
 #include "stylet/io/picture_io.hpp"
 #include "stylet/measure/timing.hpp"
 #include "stylet/patient/imaged_patient.hpp"

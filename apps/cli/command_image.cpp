@@ -7,6 +7,7 @@
 #include "stylet/geom/centroid.hpp"
 #include "stylet/imaging/scan_conversion.hpp"
 #include "stylet/imaging/ultrasound_scanner.hpp"
+#include "stylet/io/files.hpp"
 #include "stylet/io/picture_io.hpp"
 #include "stylet/measure/timing.hpp"
 #include "stylet/patient/imaged_patient.hpp"

@@ -115,7 +115,7 @@ Result<> run_draft(const InfoArguments& arguments, Console& console) {
                                   arguments.volume, arguments.regions_from, arguments.skip, notes}));
   for (const std::string& warning : draft.warnings) console.warn(warning);
   if (arguments.output.empty()) {
-    console.say(draft.text);
+    need(console.print(draft.text));
   } else {
     need(write_text_file(arguments.output, draft.text + '\n'));
     console.say(fmt::format("{} → {}", arguments.file, arguments.output));
@@ -130,8 +130,7 @@ Result<> run_info(const InfoArguments& arguments, Console& console) {
   Json json = {{"file", arguments.file}};
   json.update(description.json);
   for (const std::string& warning : description.warnings) console.warn(arguments.file + ": " + warning);
-  console.say(arguments.file + '\n' + description.text);
-  need(console.said());
+  need(console.print(arguments.file + '\n' + description.text));
   return console.write_json(json);
 }
 

@@ -218,14 +218,8 @@ bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
 }
 
 Result<> run_insert(const InsertArguments& arguments, Console& console) {
-  if (arguments.print_schema) {
-    console.say(schema_text());
-    return console.said();
-  }
-  if (arguments.print_tissues) {
-    console.say(tissues_text(arguments));
-    return console.said();
-  }
+  if (arguments.print_schema) return console.print(schema_text());
+  if (arguments.print_tissues) return console.print(tissues_text(arguments));
   if (arguments.scenario.empty())
     return input_error("insert", "no scenario is given", "Give a scenario file, for example scenarios/demo.toml");
   const std::filesystem::path folder = result_folder(arguments.output, arguments.scenario);

@@ -6,6 +6,7 @@
 #include "validators.hpp"
 
 #include "stylet/geom/flat_tets.hpp"
+#include "stylet/io/files.hpp"
 #include "stylet/patient/patient_file.hpp"
 #include "stylet/patient/patient_mesh.hpp"
 #include "stylet/sim/choices.hpp"

@@ -5,6 +5,7 @@
 #include "validators.hpp"
 
 #include "stylet/io/contours_io.hpp"
+#include "stylet/io/files.hpp"
 #include "stylet/phantom/phantom.hpp"
 
 #include <fmt/format.h>

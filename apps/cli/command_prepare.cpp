@@ -4,6 +4,7 @@
 #include "output_path.hpp"
 #include "table.hpp"
 
+#include "stylet/io/files.hpp"
 #include "stylet/io/model_file.hpp"
 #include "stylet/io/scenario_io.hpp"
 #include "stylet/patient/prepared_model.hpp"

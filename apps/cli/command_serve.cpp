@@ -14,8 +14,10 @@
 
 #include <fmt/format.h>
 
+#include <semaphore.h>
 #include <algorithm>
 #include <cmath>
+
 #include <csignal>
 #include <filesystem>
 
@@ -46,6 +48,11 @@ fs::path models_beside_program() {
   return program.parent_path().parent_path() / "share" / "stylet" / "models";
 }
 
+void warn_if_not_kept(const PreparedModel& prepared, Console& console) {
+  if (!prepared.not_kept.empty())
+    console.warn("The model was not stored in the cache, so the next start takes as long: " + prepared.not_kept);
+}
+
 /// Opens a scenario with a plan of seeds and no insertion: its needles are those of the plan.
 Result<serve::LoadedCase> load_implant(const fs::path& file, const std::vector<std::string>& settings,
                                        const ModelCache& cache, Console& console, const Progress& progress) {
@@ -59,6 +66,7 @@ Result<serve::LoadedCase> load_implant(const fs::path& file, const std::vector<s
   }
   auto prepared = prepare_needle_of_file(file.string(), settings, plan->needles.front(), progress, &cache);
   if (!prepared) return prepared.error();
+  warn_if_not_kept(*prepared, console);
   serve::LoadedCase loaded{prepared->model, prepared->notes};
   for (const auto* notes : {&plan->plan.notes, &plan->structures.notes})
     loaded.notes.insert(loaded.notes.end(), notes->begin(), notes->end());
@@ -106,8 +114,7 @@ Result<serve::CaseSource> case_of(const fs::path& file, const ServeArguments& ar
               "needle",
               "Give its scenario, or prepare the model with --set procedure.stabilising=[]");
         }
-        if (!prepared->not_kept.empty())
-          console.warn("The model was not stored in the cache, so the next start takes as long: " + prepared->not_kept);
+        warn_if_not_kept(*prepared, console);
         for (const std::string& warning : prepared->warnings()) console.warn(warning);
         return serve::LoadedCase{prepared->model, prepared->notes};
       }};
@@ -165,24 +172,26 @@ std::uintmax_t keep_bytes(double keep_GB) {
   return keep_GB > 0.0 ? static_cast<std::uintmax_t>(std::ceil(1e9 * keep_GB)) : 0;
 }
 
-/// Waits for SIGINT or SIGTERM.
+/// Waits for SIGINT or SIGTERM. A handler takes them, whichever thread they meet: libraries have threads that began
+/// before this program could block a signal in them.
 class EndSignal {
  public:
-  /// Blocks the signals. Must be called before any other thread starts, so that no thread receives them.
   EndSignal() {
-    sigemptyset(&signals_);
-    sigaddset(&signals_, SIGINT);
-    sigaddset(&signals_, SIGTERM);
-    pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+    sem_init(&came(), 0, 0);
+    for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { sem_post(&came()); });
   }
   void wait() {
-    int signal = 0;
-    sigwait(&signals_, &signal);
-    pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);  // a second signal ends the program at once
+    while (sem_wait(&came()) != 0) {
+    }
+    for (const int signal : {SIGINT, SIGTERM})
+      std::signal(signal, SIG_DFL);  // a second signal ends the program at once
   }
 
  private:
-  sigset_t signals_{};
+  static sem_t& came() {
+    static sem_t semaphore;
+    return semaphore;
+  }
 };
 
 Result<> run_serve(const ServeArguments& arguments, Console& console) {

@@ -100,7 +100,7 @@ std::string sensitivity_text(const validate::Sensitivity& study) {
 
 Result<> run_validate(const ValidateArguments& arguments, Console& console) {
   if (arguments.list) {
-    console.say(list_text());
+    need(console.print(list_text()));
     return console.write_json(list_json());
   }
   if (arguments.output.empty())

@@ -41,7 +41,7 @@ bool stderr_is_terminal() {
 struct Console::Parts {
   CommonOptions options;
   bool output_is_open = true;
-  std::string output_lost;                 ///< why standard output cannot be written; empty: it can
+  bool output_is_lost = false;             ///< standard output could not be written
   int json_descriptor = -1;                ///< the real standard output while --json - redirects stdout to stderr
   std::mutex mutex;                        ///< guards the next member: stylet serve warns from several threads
   std::set<std::string> told;              ///< warnings that were given ahead
@@ -87,15 +87,18 @@ Result<> Console::configure(const CommonOptions& options) {
 }
 
 void Console::say(std::string_view text) {
-  if (parts_->options.quiet || !parts_->output_lost.empty()) return;
-  parts_->output_lost = parts_->line(stdout, "", text);
-  if (!parts_->output_lost.empty()) warn(said().error().message());
+  if (parts_->output_is_lost) return;
+  if (const Result<> done = print(text); !done) {
+    parts_->output_is_lost = true;
+    warn(done.error().message());
+  }
 }
 
-Result<> Console::said() const {
-  if (parts_->output_lost.empty()) return Ok{};
-  return failure("standard output", "writing failed: " + parts_->output_lost,
-                 "Check the file or program that receives it");
+Result<> Console::print(std::string_view text) {
+  if (parts_->options.quiet) return Ok{};
+  const std::string reason = parts_->line(stdout, "", text);
+  if (reason.empty()) return Ok{};
+  return failure("standard output", "writing failed: " + reason, "Check the file or program that receives it");
 }
 
 void Console::detail(std::string_view text) {

@@ -38,8 +38,8 @@ class Console {
   /// Prints a result: one or more lines without the last line end. Prints nothing with --quiet.
   /// If standard output cannot be written (a full disk, a closed pipe), a warning is printed once and work continues.
   void say(std::string_view text);
-  /// For commands whose only result is their text: an error if some of it could not be printed.
-  [[nodiscard]] Result<> said() const;
+  /// The same for a command whose only result is this text: an error if it cannot be printed.
+  Result<> print(std::string_view text);
   /// Prints a detail on standard error; only with --verbose.
   void detail(std::string_view text);
   void warn(std::string_view text);

@@ -8,6 +8,7 @@
 
 #include "stylet/core/parallel.hpp"
 #include "stylet/core/version.hpp"
+#include "stylet/io/remarks.hpp"
 
 #include <fmt/format.h>
 
@@ -85,7 +86,9 @@ int run(int argc, char** argv, Console& console) {
     program.parse(std::move(words));
   } catch (const CLI::Success& asked) {  // --help, --version
     const int status = program.exit(asked);
-    return std::cout.flush() ? status : kFailed;
+    if (std::cout.flush()) return status;
+    console.error("standard output: writing failed. Check the file or program that receives it.");
+    return kFailed;
   } catch (const CLI::ParseError& error) {
     console.error(explain(error, program));
     return kBadInput;
@@ -112,6 +115,7 @@ int run(int argc, char** argv, Console& console) {
 
 int main(int argc, char** argv) {
   Console console(prepare_standard_streams());
+  receive_remarks([&console](const std::string& remark) { console.warn(remark); });
   try {
     return run(argc, argv, console);
   } catch (const std::bad_alloc&) {

@@ -10,7 +10,8 @@
 namespace stylet::cli {
 
 /// Checks, before any work is done, that a file can be written. Creates nothing. Errors: a folder of this name exists,
-/// or the file's folder does not exist and cannot be made, or is not writable.
+/// or the file's folder does not exist and cannot be made, or is not writable. A full disk is an error of the kind
+/// `failed`, all others are of the kind `input`.
 Result<> check_output_file(const std::filesystem::path& path);
 
 /// Checks that a folder exists or can be made, and is writable. Creates nothing.
@@ -21,10 +22,7 @@ inline std::filesystem::path result_folder(const std::string& wanted, const std:
   return wanted.empty() ? "out" / scenario.stem() : std::filesystem::path(wanted);
 }
 
-/// Makes a folder and its parent folders; does nothing if it exists.
-Result<> make_folder(const std::filesystem::path& path);
-
-/// Writes a text file, which appears complete or not at all, and makes its folder.
+/// Writes a text file by write_whole_file(), and makes its folder.
 Result<> write_text_file(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace stylet::cli

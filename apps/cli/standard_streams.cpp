@@ -15,7 +15,7 @@ bool prepare_standard_streams() {
     if (::fcntl(stream, F_GETFD) < 0)
       (void)::open("/dev/null", O_RDWR);  // gets the lowest free number, which is `stream`
   }
-  std::signal(SIGPIPE, SIG_IGN);
+  for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
   return output_is_open;
 }
 

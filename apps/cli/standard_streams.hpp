@@ -4,8 +4,8 @@
 namespace stylet::cli {
 
 /// Must be called before anything else. Opens closed standard streams as /dev/null: otherwise the next opened file
-/// would get the number of a standard stream and printed text would go into it. Also ignores SIGPIPE, so that a closed
-/// pipe is an error of writing and does not end the program.
+/// would get the number of a standard stream and printed text would go into it. Also ignores SIGPIPE and SIGXFSZ, so
+/// that a closed pipe and a limit on the size of files are errors of writing and do not end the program.
 /// @return whether standard output was open
 bool prepare_standard_streams();
 

@@ -22,7 +22,7 @@ class DropLog {
   /// @param what a sentence without its full stop
   /// @param is_told_once for messages that are not wanted though nothing is wrong with them
   void add(const std::string& kind, std::string what, std::string cure, bool is_told_once = false);
-  /// What has to be said now, and has not been said.
+  /// The sentences about dropped messages that are due now and have not been said.
   std::vector<Dropped> news(Clock::time_point now);
   [[nodiscard]] std::int64_t total() const;
 

@@ -2,9 +2,10 @@
 #include "kept_meshes.hpp"
 
 #include "io/detail/private_files.hpp"
-#include "io/detail/whole_file.hpp"
+#include "io/detail/remark.hpp"
 #include "io/detail/wire.hpp"
 #include "io/model/digest.hpp"
+#include "stylet/io/files.hpp"
 
 #include <fmt/format.h>
 
@@ -91,11 +92,11 @@ Result<MeshedAnatomy> kept_or_made(const auto& input, const MeshOptions& options
     detail::WireWriter wire;
     wire(*made);
     detail::make_private_folder(path->parent_path());
-    (void)detail::write_whole(*path, [&](const fs::path& to) -> Result<> {
-      detail::make_private_file(to);
-      std::ofstream(to, std::ios::binary) << sha256(wire.bytes) << wire.bytes;
-      return Ok{};
-    });
+    Result<> kept = make_folder(path->parent_path());  // says why there is none
+    if (kept) kept = write_whole_file(*path, sha256(wire.bytes) + wire.bytes, FileReaders::owner);
+    if (!kept)
+      detail::remark(fmt::format("The mesh was not kept in {} (STYLET_CACHE): {}.", path->parent_path().string(),
+                                 kept.error().what));
   }
   return made;
 }

@@ -13,7 +13,7 @@ constexpr double kForce_N = 0.005;
 constexpr double kTorque_Nmm = 0.5;
 constexpr double kAngle_deg = 0.05;
 
-/// What is seen at once when it changes at all.
+/// The members of a picture of which a viewer sees every change.
 std::vector<std::uint32_t> words_of(const LiveFrame& f) {
   const bool paused = (f.bits & LiveFrame::paused) != 0;
   std::vector<std::uint32_t> words{f.bits & ~std::uint32_t{LiveFrame::whole_curve},

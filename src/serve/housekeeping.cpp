@@ -2,11 +2,13 @@
 #include "housekeeping.hpp"
 
 #include "folder_lock.hpp"
+#include "io/detail/unfinished.hpp"
 #include "shelf.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
 #include <system_error>
 
@@ -25,6 +27,14 @@ bool holds_only_its_recording(const fs::path& folder) {
   std::error_code code;
   for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
     if (entry->path().filename() != "run.h5") return false;
+  }
+  return !code;
+}
+
+bool holds_only_unfinished_files(const fs::path& folder) {
+  std::error_code code;
+  for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
+    if (!detail::is_unfinished(entry->path())) return false;
   }
   return !code;
 }
@@ -54,6 +64,22 @@ bool remove_unless_in_use(const Recording& recording) {
   return !code;
 }
 
+/// Removes the folders of recordings that were not begun because their process was killed. A new folder is none of
+/// them: its process may be about to lock it.
+void remove_not_begun(const fs::path& folder) {
+  constexpr std::chrono::minutes new_for{1};
+  std::vector<fs::path> found;
+  std::error_code code;
+  for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
+    const fs::path& of = entry->path();
+    std::error_code none;
+    if (!entry->is_directory(none) || entry->is_symlink(none) || !Shelf::is_own_name(of.filename().string())) continue;
+    const bool is_old = fs::last_write_time(of, none) < fs::file_time_type::clock::now() - new_for;
+    if (!none && is_old && holds_only_unfinished_files(of)) found.push_back(of);
+  }
+  for (const fs::path& of : found) (void)remove_unless_in_use({of, {}, 0});
+}
+
 std::string gigabytes(std::uintmax_t bytes) {
   return fmt::format("{:.3g} GB", static_cast<double>(bytes) / static_cast<double>(RecordingRoom::kGigabyte));
 }
@@ -68,6 +94,7 @@ std::uintmax_t free_bytes(const fs::path& folder) {
 
 RoomReport make_room(const fs::path& folder, const RecordingRoom& room,
                      const std::function<std::uintmax_t(const fs::path&)>& free) {
+  remove_not_begun(folder);
   RoomReport report;
   if (room.most_bytes > 0) {
     const std::vector<Recording> recordings = recordings_in(folder);

@@ -45,7 +45,7 @@ class ImplantDose {
   std::uint64_t set(std::vector<PlacedSource> seeds);
 
   using News = ImplantNews;
-  /// What has been computed since the last call.
+  /// The results that have been computed since the last call.
   [[nodiscard]] News news();
 
  private:

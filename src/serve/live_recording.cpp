@@ -29,6 +29,8 @@ void LiveRecording::begin(const std::filesystem::path& folder, const RunInfo& in
   auto recorder = RunRecorder::open(folder / "run.h5", info, mesh, plan);
   if (!recorder) {
     problem_ = recorder.error().message();
+    std::error_code ignored;
+    std::filesystem::remove(folder, ignored);  // nothing is in it
     return;
   }
   detail::make_private(folder / "run.h5");

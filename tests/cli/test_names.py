@@ -187,9 +187,7 @@ class Damage(Clean):
         for name, content in self.FILES.items():
             self.write(name, content)
             for command in (["info", name], ["mesh", name, "-o", "m.vtu"], ["dose", name, "-o", "out"],
-                            ["implant", name], ["serve", name]):
-                if command[0] == "serve" and not name.endswith((".h5", ".stylet")):
-                    continue
+                            ["implant", name]):
                 text = self.check(*command)
                 self.assertIn(name, text)
 

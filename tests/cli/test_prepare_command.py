@@ -3,6 +3,7 @@
 """stylet prepare: a saved model runs like its scenario, can be described, and is refused if it is incomplete."""
 import subprocess
 import unittest
+from pathlib import Path
 
 from insert_case import FAST, SMALL, Cases, without_step_times
 from program import STYLET
@@ -39,6 +40,7 @@ class Prepare(Cases):
     def test_a_stripped_program_finds_what_the_whole_one_has_kept(self):
         stripped = self.folder / "stylet"
         subprocess.run(["strip", "-o", stripped, STYLET], check=True)
+        (self.folder / "stylet-reader").symlink_to(Path(STYLET).parent / "stylet-reader")
         names = []
         for number, program in enumerate((STYLET, stripped)):
             models = self.folder / f"models{number}"

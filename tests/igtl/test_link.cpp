@@ -47,7 +47,7 @@ Raw text_message(const char* name, const std::string& text) {
   return packed(*message);
 }
 
-/// What a link says of the next message that is not used; empty: nothing within a minute.
+/// The words of a link about the next message that is not used; empty: nothing within a minute.
 Dropped next_news(Link& link) {
   std::vector<Dropped> news;
   comes_true([&] {

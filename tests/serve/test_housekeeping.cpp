@@ -45,6 +45,16 @@ TEST_F(Housekeeping, the_oldest_go_until_the_rest_fit) {
   EXPECT_TRUE(has(kThird));
 }
 
+TEST_F(Housekeeping, what_a_killed_server_had_not_begun_goes_unless_it_is_new_or_in_use) {
+  using stylet::test::write_file;
+  for (const char* name : {kFirst, kSecond, kThird}) write_file(folder / name / ".stylet-1-0.part", "half");
+  for (const char* name : {kFirst, kSecond})
+    fs::last_write_time(folder / name, fs::file_time_type::clock::now() - std::chrono::hours(1));
+  const FolderLock in_use(folder / kSecond, FolderLock::Kind::shared);
+  look(0);
+  EXPECT_EQ(stylet::test::names_in(folder), (std::vector<std::string>{kSecond, kThird}));
+}
+
 TEST_F(Housekeeping, without_a_limit_nothing_goes) {
   make(kFirst);
   EXPECT_TRUE(look(0).removed.empty());

@@ -30,12 +30,13 @@ Result<> bench_dose_command(const BenchArguments&, Console& console) {
                             {"worst_percent", row.worst_percent}});
   }
   json["machine"] = machine_json();
-  console.say(
+  need(console.print(
       "Dose rates of seeds of model 6711 at random points of a box of 50 mm, on one core. Formula: TG-43 at each "
       "point. "
       "Table: by a table of the dose rate.\n"
-      "One more: the time to add one more seed by the table. Off by: the largest difference of the sums by the table.");
-  console.say(table.text());
+      "One more: the time to add one more seed by the table. Off by: the largest difference of the sums by the "
+      "table."));
+  need(console.print(table.text()));
   return console.write_json(json);
 }
 

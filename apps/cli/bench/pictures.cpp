@@ -23,15 +23,15 @@ Result<> bench_pictures_command(const BenchArguments& arguments, Console& consol
                             {"prepare_s", row.prepare_s}});
   }
   json["machine"] = machine_json();
-  console.say(
+  need(console.print(
       "Processor time of a picture of the deformed demo patient, of 60 of each kind, in one thread.\n"
       "Surfaces: all surfaces with the needle's near field. Section: a slice of the patient. Both are computed from "
       "the "
       "forces of an insertion with 40 contacts.\n"
       "Ultrasound and X-ray: a picture with a needle and 20 seeds. Probe: the forces of an ultrasound probe that "
       "presses.\n"
-      "Before: processor time before the first picture.");
-  console.say(table.text());
+      "Before: processor time before the first picture."));
+  need(console.print(table.text()));
   return console.write_json(json);
 }
 

@@ -73,17 +73,17 @@ void say_events(const measure::EventBench& bench, Console& console) {
                number(row.warm_us.p50, 1), number(row.warm_us.p95, 1), number(row.warm_us.max, 1),
                number(row.cold_us.p50, 1), number(row.cold_us.p95, 1), number(row.cold_us.max, 1)});
   }
-  console.say(
+  need(console.print(
       "Adding a contact at the needle tip in the demo patient: search of the element, border of the system and "
       "compliances with all other points.\n"
       "Rules interior and paper: node addition. Rule near-field: the default, which adds no node. Cold: the processor "
-      "caches were emptied before.");
-  console.say(table.text());
+      "caches were emptied before."));
+  need(console.print(table.text()));
   const auto spread = [](const measure::Spread& of) {
     return fmt::format("{:.0f} µs ({:.0f} … {:.0f})", of.p50, of.p5, of.p95);
   };
-  console.say(fmt::format("Woodbury's update of the full inverse at {} nodes: warm {}, cold {}.", bench.woodbury_nodes,
-                          spread(bench.woodbury_us), spread(bench.woodbury_cold_us)));
+  need(console.print(fmt::format("Woodbury's update of the full inverse at {} nodes: warm {}, cold {}.",
+                                 bench.woodbury_nodes, spread(bench.woodbury_us), spread(bench.woodbury_cold_us))));
   for (const std::string& rule : kRules) {
     const Ratios warm = ratios(bench, rule, false);
     const Ratios cold = ratios(bench, rule, true);
@@ -95,7 +95,7 @@ void say_events(const measure::EventBench& bench, Console& console) {
                           bench.finest(rule)->nodes, *warm.finest_over_coarsest, bench.coarsest(rule)->nodes,
                           *cold.finest_over_coarsest);
     }
-    console.say(text + ".");
+    need(console.print(text + "."));
   }
 }
 
@@ -128,8 +128,8 @@ Result<> bench_remesh_command(const BenchArguments& arguments, Console& console)
   const auto events = need(measure::bench_events(options, console.progress()));
   add_events(events, json);
   json["machine"] = machine_json();
-  console.say("Median processor time of one complete change of the mesh:");
-  console.say(table.text());
+  need(console.print("Median processor time of one complete change of the mesh:"));
+  need(console.print(table.text()));
   say_events(events, console);
   return console.write_json(json);
 }

@@ -92,7 +92,7 @@ Result<> bench_scale_command(const BenchArguments& arguments, Console& console) 
                             {"memory_mb", row.memory_mb}});
   }
   json["machine"] = machine_json();
-  console.say(
+  need(console.print(
       "The needle of the demo scenario in firm tissue: 90 mm in, back and forth three times, and out. The times are of "
       "the steps that have nearly all contacts.\n"
       "p50 … max: processor time of the thread. p99 / 570: ratio of p99 to p99 on the coarsest mesh with as many "
@@ -104,8 +104,8 @@ Result<> bench_scale_command(const BenchArguments& arguments, Console& console) 
       "over 1 ms.\n"
       "By medians: the longest of all steps after each time was replaced by the median over the repeats of that step.\n"
       "Mesh, factor, store: time before the first step, for meshing the contours, factorising the stiffness, and "
-      "computing the stored compliances with everything else. Memory: resident memory after that.");
-  console.say(table.text());
+      "computing the stored compliances with everything else. Memory: resident memory after that."));
+  need(console.print(table.text()));
   return console.write_json(json);
 }
 

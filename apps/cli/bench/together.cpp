@@ -30,11 +30,11 @@ Result<> bench_together_command(const BenchArguments& arguments, Console& consol
                             {"p99_over_alone", row.cpu_us.p99 / alone.p99}});
   }
   json["machine"] = machine_json();
-  console.say(
+  need(console.print(
       "Processor time of a step of the demo's needle, from 40 to 85 mm, while others rest at 85 mm around it, 5 mm "
       "apart.\n"
-      "Contacts: of the moving needle, and of all needles. Flagged: steps without a balance. Alone: the first row.");
-  console.say(table.text());
+      "Contacts: of the moving needle, and of all needles. Flagged: steps without a balance. Alone: the first row."));
+  need(console.print(table.text()));
   return console.write_json(json);
 }
 

@@ -36,7 +36,7 @@ class Companion {
   [[nodiscard]] virtual std::unique_ptr<Device> device() = 0;
   /// Why the device gives no usable pose, in words.
   [[nodiscard]] virtual std::string why_no_pose() const = 0;
-  /// What it has not used of what it has received, and has to be told of now on the terminal and on the pages, in
+  /// The words about messages that it has not used, which are due now on the terminal and on the pages, in
   /// sentences without their full stops.
   virtual std::vector<Notice> news() { return {}; }
   /// How many messages and connections it has not used.

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writer of contour JSON (docs/formats.md).
-#include "detail/whole_file.hpp"
 #include "stylet/core/json_text.hpp"
 #include "stylet/io/contours_io.hpp"
+#include "stylet/io/files.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-
-#include <fstream>
 
 namespace stylet {
 
@@ -43,13 +41,7 @@ Result<> write_contour_json(const ContourSet& contours, const std::filesystem::p
     text += "\n      ]\n    }";
   }
   text += "\n  ]\n}\n";
-  return detail::write_whole(path, [&](const std::filesystem::path& temporary) -> Result<> {
-    std::ofstream file(temporary, std::ios::binary);
-    file << text;
-    file.close();
-    if (!file) return failure(path.string(), "the file cannot be written", "Check the folder's permissions and space");
-    return Ok{};
-  });
+  return write_whole_file(path, text);
 }
 
 }  // namespace stylet

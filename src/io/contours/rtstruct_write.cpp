@@ -5,6 +5,7 @@
 #include "detail/text.hpp"
 #include "stylet/core/version.hpp"
 #include "stylet/io/contours_io.hpp"
+#include "stylet/io/files.hpp"
 
 #include <dcmtk/config/osconfig.h>
 #include <dcmtk/dcmdata/dctk.h>
@@ -143,7 +144,9 @@ Result<> write_rtstruct(const ContourSet& contours, const fs::path& path, const 
   Filler fill;
   fill_header(fill, *file.getDataset(), contours, print, frame, patient);
   fill_structures(fill, *file.getDataset(), contours, frame);
-  return detail::save_dicom(file, fill, path, EXS_LittleEndianImplicit, "RT Structure Set");
+  auto bytes = detail::dicom_bytes(file, fill, path.string(), EXS_LittleEndianImplicit, "RT Structure Set");
+  if (!bytes) return bytes.error();
+  return write_whole_file(path, *bytes);
 }
 
 }  // namespace stylet

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "detail/dicom_write.hpp"
 
+#include "detail/memory_stream.hpp"
 #include "detail/patient_attributes.hpp"
-#include "detail/whole_file.hpp"
 #include "stylet/core/version.hpp"
 
+#include <dcmtk/dcmdata/dcostrmf.h>
+#include <dcmtk/dcmdata/dcwcache.h>
 #include <fmt/format.h>
 
 #include <boost/multiprecision/cpp_int.hpp>
@@ -73,16 +75,23 @@ void fill_common(Filler& fill, DcmDataset& data, const char* sop_class, const ch
   }
 }
 
-Result<> save_dicom(DcmFileFormat& file, const Filler& fill, const std::filesystem::path& path, E_TransferSyntax syntax,
-                    const char* name) {
+Result<std::string> dicom_bytes(DcmFileFormat& file, const Filler& fill, const std::string& where,
+                                E_TransferSyntax syntax, const char* name) {
   if (fill.status().bad())
-    return failure(path.string(), fmt::format("a value of the {} does not fit into a DICOM file", name),
+    return failure(where, fmt::format("a value of the {} does not fit into a DICOM file", name),
                    "Shorten the names in its input");
-  return write_whole(path, [&](const std::filesystem::path& temporary) -> Result<> {
-    if (file.saveFile(temporary.c_str(), syntax).good()) return Ok{};
-    return failure(path.string(), fmt::format("the {} cannot be written", name),
-                   "Check the folder's permissions and space");
-  });
+  OFCondition status;
+  MemoryStream memory;
+  {
+    DcmOutputFileStream stream(memory.stream());  // closes it
+    DcmWriteCache cache;
+    file.transferInit();
+    status =
+        file.write(stream, syntax, EET_UndefinedLength, &cache, EGL_recalcGL, EPD_noChange, 0, 0, 0, EWM_fileformat);
+    file.transferEnd();
+  }
+  if (status.good()) return memory.bytes();
+  return failure(where, fmt::format("the {} cannot be made", name), "Correct its input");
 }
 
 }  // namespace stylet::detail

@@ -67,9 +67,10 @@ std::string print_of(const PatientRecord& patient);
 void fill_common(Filler& fill, DcmDataset& data, const char* sop_class, const char* modality, const std::string& print,
                  const PatientRecord& patient);
 
-/// Saves a file that was filled; it appears whole or not at all.
+/// The bytes of a file that was filled.
+/// @param where the file, for messages
 /// @param name of the kind of file in messages, such as "RT Plan"
-Result<> save_dicom(DcmFileFormat& file, const Filler& fill, const std::filesystem::path& path, E_TransferSyntax syntax,
-                    const char* name);
+Result<std::string> dicom_bytes(DcmFileFormat& file, const Filler& fill, const std::string& where,
+                                E_TransferSyntax syntax, const char* name);
 
 }  // namespace stylet::detail

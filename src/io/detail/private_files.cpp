@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "detail/private_files.hpp"
 
-#include <fcntl.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <system_error>
 
@@ -16,13 +14,6 @@ void make_private_folder(const fs::path& folder) {
   fs::create_directories(place.parent_path(), code);
   if (::mkdir(place.c_str(), S_IRWXU) != 0) return;
   fs::permissions(place, fs::perms::owner_all, code);
-}
-
-void make_private_file(const fs::path& file) {
-  const int made = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, S_IRUSR | S_IWUSR);
-  if (made < 0) return;
-  ::fchmod(made, S_IRUSR | S_IWUSR);
-  ::close(made);
 }
 
 void make_private(const fs::path& file) {

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Plans in JSON (docs/formats.md).
-#include "detail/whole_file.hpp"
 #include "dose/dose_parsers.hpp"
 #include "dose/json_object.hpp"
 #include "dose/plan_builder.hpp"
 #include "dose/plan_words.hpp"
 #include "stylet/core/json_text.hpp"
+#include "stylet/io/files.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 
 namespace stylet {
 
@@ -177,12 +176,7 @@ Result<> write_plan_json(const DosePlan& plan, const std::filesystem::path& path
     if (kind_count(plan) > 1) seed["source"] = source_kind(plan, s.kind).source_model;
     json["seeds"].push_back(seed);
   }
-  return detail::write_whole(path, [&](const std::filesystem::path& temporary) -> Result<> {
-    std::ofstream stream(temporary);
-    stream << json_text(json, 1) << '\n';
-    if (stream.flush()) return Ok{};
-    return failure(path.string(), "the plan cannot be written", "Check the folder's permissions and space");
-  });
+  return write_whole_file(path, json_text(json, 1) + '\n');
 }
 
 }  // namespace stylet

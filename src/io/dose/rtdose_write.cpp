@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writers of dose grids: DICOM RTDOSE (DICOM PS3.3 A.18.3) and NRRD.
 #include "detail/dicom_write.hpp"
-#include "detail/whole_file.hpp"
+#include "detail/memory_stream.hpp"
+#include "dose/dose_bytes.hpp"
 #include "stylet/core/version.hpp"
-#include "stylet/io/dose_io.hpp"
+#include "stylet/io/files.hpp"
 
 #include <fmt/format.h>
 #include <teem/nrrd.h>
@@ -93,11 +94,11 @@ void fill_dose(Filler& fill, DcmDataset& data, const DoseGrid& grid, const std::
 
 }  // namespace
 
-Result<> write_rtdose(const DoseGrid& grid, const std::string& plan_sop_instance, const fs::path& path,
-                      const PatientRecord& patient, const std::string& comment) {
-  if (Result<> good = check_grid(grid, path.string()); !good) return good;
+Result<std::string> rtdose_bytes(const DoseGrid& grid, const std::string& plan_sop_instance, const std::string& where,
+                                 const PatientRecord& patient, const std::string& comment) {
+  if (Result<> good = check_grid(grid, where); !good) return good.error();
   if (grid.size[0] > 65535 || grid.size[1] > 65535)
-    return failure(path.string(), "a DICOM grid has at most 65535 rows and columns", "Use a coarser grid");
+    return failure(where, "a DICOM grid has at most 65535 rows and columns", "Use a coarser grid");
   constexpr double most = 4.0e9;  // below 2³², so that rounding cannot pass it
   const double highest = static_cast<double>(*std::max_element(grid.dose_Gy.begin(), grid.dose_Gy.end()));
   // The scaling is rounded to the digits that the file holds before doses are divided by it.
@@ -105,11 +106,18 @@ Result<> write_rtdose(const DoseGrid& grid, const std::string& plan_sop_instance
   DcmFileFormat file;
   Filler fill;
   fill_dose(fill, *file.getDataset(), grid, plan_sop_instance, patient, comment, scaling);
-  return detail::save_dicom(file, fill, path, EXS_LittleEndianExplicit, "RT Dose");
+  return detail::dicom_bytes(file, fill, where, EXS_LittleEndianExplicit, "RT Dose");
 }
 
-Result<> write_dose_nrrd(const DoseGrid& grid, const fs::path& path) {
-  if (Result<> good = check_grid(grid, path.string()); !good) return good;
+Result<> write_rtdose(const DoseGrid& grid, const std::string& plan_sop_instance, const fs::path& path,
+                      const PatientRecord& patient, const std::string& comment) {
+  auto bytes = rtdose_bytes(grid, plan_sop_instance, path.string(), patient, comment);
+  if (!bytes) return bytes.error();
+  return write_whole_file(path, *bytes);
+}
+
+Result<std::string> dose_nrrd_bytes(const DoseGrid& grid, const std::string& where) {
+  if (Result<> good = check_grid(grid, where); !good) return good.error();
   const std::unique_ptr<Nrrd, Nrrd* (*)(Nrrd*)> volume(nrrdNew(), nrrdNix);
   std::vector<float> doses = grid.dose_Gy;  // the library wants to be able to change them
   const std::size_t size[] = {static_cast<std::size_t>(grid.size[0]), static_cast<std::size_t>(grid.size[1]),
@@ -125,15 +133,22 @@ Result<> write_dose_nrrd(const DoseGrid& grid, const fs::path& path) {
          nrrdSpaceOriginSet(volume.get(), origin) == 0;
   nrrdAxisInfoSet_nva(volume.get(), nrrdAxisInfoSpaceDirection, directions);
   good = good && nrrdKeyValueAdd(volume.get(), "quantity", "dose [Gy]") == 0;
-  return detail::write_whole(path, [&](const fs::path& temporary) -> Result<> {
-    const std::unique_ptr<NrrdIoState, NrrdIoState* (*)(NrrdIoState*)> io(nrrdIoStateNew(), nrrdIoStateNix);
-    io->encoding = nrrdEncodingGzip;
-    io->format = nrrdFormatNRRD;
-    if (good && nrrdSave(temporary.c_str(), volume.get(), io.get()) == 0) return Ok{};
-    const std::unique_ptr<char, void (*)(void*)> why(biffGetDone(NRRD), std::free);
-    return failure(path.string(), fmt::format("the dose grid cannot be written ({})", why ? why.get() : "NRRD"),
-                   "Check the folder's permissions and space");
-  });
+  const std::unique_ptr<NrrdIoState, NrrdIoState* (*)(NrrdIoState*)> io(nrrdIoStateNew(), nrrdIoStateNix);
+  io->encoding = nrrdEncodingGzip;
+  io->format = nrrdFormatNRRD;
+  const detail::MemoryStream memory;
+  good = good && nrrdWrite(memory.stream(), volume.get(), io.get()) == 0;
+  std::fclose(memory.stream());
+  if (good) return memory.bytes();
+  const std::unique_ptr<char, void (*)(void*)> why(biffGetDone(NRRD), std::free);
+  return failure(where, fmt::format("the dose grid cannot be made ({})", why ? why.get() : "NRRD"),
+                 "Use a coarser grid");
+}
+
+Result<> write_dose_nrrd(const DoseGrid& grid, const fs::path& path) {
+  auto bytes = dose_nrrd_bytes(grid, path.string());
+  if (!bytes) return bytes.error();
+  return write_whole_file(path, *bytes);
 }
 
 }  // namespace stylet

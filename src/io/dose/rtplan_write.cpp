@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writer of brachytherapy plans in DICOM RTPLAN (DICOM PS3.3 A.20).
 #include "detail/dicom_write.hpp"
+#include "dose/dose_bytes.hpp"
 #include "stylet/core/version.hpp"
 #include "stylet/dose/strength_age.hpp"
-#include "stylet/io/dose_io.hpp"
+#include "stylet/io/files.hpp"
 
 #include <fmt/format.h>
 
@@ -249,11 +250,11 @@ std::string rtplan_uid(const DosePlan& plan, const SourceModel& source, const Pa
   return detail::derived_uid(print_of(plan, source, record_of_files(patient, plan, source)), "instance");
 }
 
-Result<> write_rtplan(const DosePlan& plan, const SourceModel& source, const fs::path& path,
-                      const PatientRecord& patient) {
+Result<std::string> rtplan_bytes(const DosePlan& plan, const SourceModel& source, const std::string& where,
+                                 const PatientRecord& patient) {
   for (const PlannedSource& s : plan.sources) {
     if (!s.at_mm.allFinite() || !s.axis.allFinite() || !std::isfinite(s.strength_U) || !std::isfinite(s.dwell_s))
-      return failure(path.string(), "a source of the plan has a number that is not finite", "Correct the plan");
+      return failure(where, "a source of the plan has a number that is not finite", "Correct the plan");
   }
   DcmFileFormat file;
   Filler fill;
@@ -261,7 +262,14 @@ Result<> write_rtplan(const DosePlan& plan, const SourceModel& source, const fs:
   fill_plan(fill, *file.getDataset(), plan, print_of(plan, source, record), record);
   fill_sources(fill, *file.getDataset(), plan, source);
   fill_channels(fill, *file.getDataset(), plan, source);
-  return detail::save_dicom(file, fill, path, EXS_LittleEndianExplicit, "RT Plan");
+  return detail::dicom_bytes(file, fill, where, EXS_LittleEndianExplicit, "RT Plan");
+}
+
+Result<> write_rtplan(const DosePlan& plan, const SourceModel& source, const fs::path& path,
+                      const PatientRecord& patient) {
+  auto bytes = rtplan_bytes(plan, source, path.string(), patient);
+  if (!bytes) return bytes.error();
+  return write_whole_file(path, *bytes);
 }
 
 }  // namespace stylet

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writer of MetaImage with MetaIO, the format's own library, part of VTK.
-#include "detail/whole_file.hpp"
+#include "stylet/io/files.hpp"
 #include "stylet/io/picture_io.hpp"
 
 #include <fmt/format.h>
@@ -8,6 +8,8 @@
 #include <Eigen/Geometry>
 
 #include <array>
+#include <fstream>
+#include <sstream>
 
 namespace stylet {
 
@@ -39,18 +41,13 @@ Result<> write_picture_mha(std::span<const GreyPicture> pictures, double distanc
   image.BinaryData(true);
   image.CompressedData(true);
   image.Comment("simulated; not a medical device");
-  return detail::write_whole(path, [&](const std::filesystem::path& temporary) -> Result<> {
-    // MetaIO chooses the kind of the file by its ending.
-    const std::filesystem::path named = temporary.string() + ".mha";
-    std::error_code code;
-    if (!image.Write(named.c_str())) {
-      std::filesystem::remove(named, code);
-      return failure(path.string(), "cannot be written", "Check the folder and the free space on its disk");
-    }
-    std::filesystem::rename(named, temporary, code);
-    if (code) return failure(path.string(), "cannot be written: " + code.message(), "Check the folder");
-    return Ok{};
-  });
+  image.ElementDataFileName("LOCAL");  // in the same file
+  std::stringbuf bytes;
+  std::ofstream stream;  // the kind of stream that MetaIO takes
+  static_cast<std::ios&>(stream).rdbuf(&bytes);
+  if (!image.WriteStream(&stream) || !stream)
+    return failure(path.string(), "MetaIO cannot make the file", "Write a .png file instead");
+  return write_whole_file(path, bytes.str());
 }
 
 }  // namespace stylet

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writer of VTU files with VTK: appended raw data, zlib; frame and unit are field data.
-#include "detail/whole_file.hpp"
+#include "stylet/io/files.hpp"
 #include "stylet/io/mesh_io.hpp"
 
 #include <fmt/format.h>
@@ -76,18 +76,14 @@ Result<> write_vtu(const TetMesh& mesh, const std::filesystem::path& path, const
   add_text(*grid->GetFieldData(), "SPACE", {"LPS"});
   add_text(*grid->GetFieldData(), "UNITS", {"mm"});
 
-  return detail::write_whole(path, [&](const std::filesystem::path& temporary) -> Result<> {
-    vtkNew<vtkXMLUnstructuredGridWriter> writer;
-    writer->SetFileName(temporary.c_str());
-    writer->SetInputData(grid);
-    writer->SetDataModeToAppended();
-    writer->EncodeAppendedDataOff();
-    writer->SetCompressorTypeToZLib();
-    if (writer->Write() != 1 || writer->GetErrorCode() != 0) {
-      return failure(path.string(), "the file cannot be written", "Check the folder's permissions and space");
-    }
-    return Ok{};
-  });
+  vtkNew<vtkXMLUnstructuredGridWriter> writer;
+  writer->SetWriteToOutputString(true);
+  writer->SetInputData(grid);
+  writer->SetDataModeToAppended();
+  writer->EncodeAppendedDataOff();
+  writer->SetCompressorTypeToZLib();
+  if (writer->Write() != 1) return failure(path.string(), "VTK cannot make the file", "Use a smaller mesh");
+  return write_whole_file(path, writer->GetOutputString());
 }
 
 }  // namespace stylet

@@ -8,6 +8,7 @@
 #include "model/build_id.hpp"
 #include "model/digest.hpp"
 #include "model/model_format.hpp"
+#include "stylet/io/files.hpp"
 #include "stylet/io/model_file.hpp"
 #include "stylet/io/scenario_io.hpp"
 
@@ -137,8 +138,7 @@ Result<> ModelCache::keep(const Model& model, const std::string& key, std::span<
   if (static_cast<std::uintmax_t>(entries) / 2 * sizeof(double) > most_bytes_)
     return Ok{};  // too large, although only one triangle of the symmetric matrix is saved
   detail::make_private_folder(folder_);
-  if (std::error_code code; !fs::is_directory(folder_, code))
-    return failure(folder_.string(), "the folder cannot be created", "Check the permissions, or choose another folder");
+  if (auto made = make_folder(folder_); !made) return made;  // says why there is none
   const fs::path file = folder_ / (key + detail::kModelExtension);
   if (auto saved = save_model(model, file, notes, progress); !saved) return saved;
   forget_oldest(file);

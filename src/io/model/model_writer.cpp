@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "detail/private_files.hpp"
-#include "detail/whole_file.hpp"
-#include "h5.hpp"
+#include "detail/unfinished.hpp"
 #include "h5_mesh.hpp"
+#include "h5_new_file.hpp"
 #include "model/model_format.hpp"
 #include "model/sealed_file.hpp"
 #include "stylet/core/json_text.hpp"
@@ -21,7 +20,7 @@ using namespace detail;
 namespace {
 
 /// Writes the lower triangle of the compliance, column by column.
-void write_store(hid_t group, const MatX& store, const Progress& progress) {
+void write_store(const h5::NewFile& file, hid_t group, const MatX& store, const Progress& progress) {
   const auto size = static_cast<hsize_t>(store.cols());
   const hsize_t numbers = size * (size + 1) / 2;
   h5::write_array(group, "blocks_mm_per_N", H5T_NATIVE_DOUBLE, {&numbers, 1}, nullptr);
@@ -35,6 +34,7 @@ void write_store(hid_t group, const MatX& store, const Progress& progress) {
       panel.insert(panel.end(), store.data() + column * store.rows() + column,
                    store.data() + (column + 1) * store.rows());
     h5::write_rows(set, H5T_NATIVE_DOUBLE, at, panel.size(), panel.data());
+    file.check();
     at += panel.size();
   }
 }
@@ -64,8 +64,7 @@ std::string index_of(hid_t file, const ModelFile& content) {
 }
 
 void write(const fs::path& path, const ModelFile& content, const Progress& progress) {
-  detail::make_private_file(path);  // a model holds the patient's organs
-  h5::Handle file = h5::create_file(path.c_str());
+  h5::NewFile file(path.c_str());
   h5::write_attribute(file, "format", std::string(kModelFileFormat));
   h5::write_attribute(file, "format_version", std::array{kModelFileVersion});
   h5::write_attribute(file, "version", content.version);
@@ -91,10 +90,10 @@ void write(const fs::path& path, const ModelFile& content, const Progress& progr
     const auto samples = static_cast<hsize_t>(content.compliance.spread.rows());
     const std::array<hsize_t, 2> square{samples, samples};
     h5::write_array(group, "spread_mm_per_N", H5T_NATIVE_DOUBLE, square, content.compliance.spread.data());
-    write_store(group, content.compliance.store, progress);
+    write_store(file, group, content.compliance.store, progress);
   }
   const std::string index = index_of(file, content);
-  if (!file.reset()) h5::fail("close");
+  file.close();
   SealedFile::seal(path, index);
 }
 
@@ -127,15 +126,11 @@ Result<> save_model(const Model& model, const fs::path& path, std::span<const st
   if (model.kernel()) file.compliance.kernel = model.kernel()->numbers();
   if (model.spread()) file.compliance.spread = model.spread()->matrix();
   file.belongs_to = compliance_origin(tissue);
-  return write_whole(path, [&](const fs::path& temporary) -> Result<> {
-    const h5::LibraryTurn turn;
-    try {
-      write(temporary, file, progress);
-      return Ok{};
-    } catch (const std::runtime_error& e) {  // thrown for errors of HDF5 and of the disk
-      return failure(where, std::string("cannot be written: ") + e.what(), "Check the free space and the permissions");
-    }
-  });
+  // A model holds the patient's organs.
+  auto hidden = Unfinished::create(path, Unfinished::Kind::private_file);
+  if (!hidden) return hidden.error();
+  if (auto done = h5::written(path, [&] { write(hidden->path(), file, progress); }); !done) return done;
+  return hidden->finish();
 }
 
 }  // namespace stylet

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <system_error>
 #include <vector>
 
 namespace stylet::detail {
@@ -26,8 +27,8 @@ constexpr std::size_t kSeal = kMark.size() + kLength + kDigest;
 constexpr std::uint64_t kLongestIndex = 1 << 20;
 constexpr std::uint64_t kPiece = 1 << 20;
 
-File opened(const fs::path& path, const char* mode) {
-  File file(std::fopen(path.c_str(), mode), std::fclose);
+File opened(const fs::path& path) {
+  File file(std::fopen(path.c_str(), "rb"), std::fclose);
   if (!file) throw NotSealed(std::strerror(errno));
   return file;
 }
@@ -67,11 +68,13 @@ std::string seal_of(std::FILE* file) {
 }  // namespace
 
 void SealedFile::seal(const fs::path& path, const std::string& index) {
-  const File file = opened(path, "r+b");
+  const auto fail = [] { throw std::system_error(errno, std::generic_category()); };
+  const File file(std::fopen(path.c_str(), "r+b"), std::fclose);
+  if (!file) fail();
   const auto append = [&](std::string_view text) {
     if (::fseeko(file.get(), 0, SEEK_END) != 0 || std::fwrite(text.data(), 1, text.size(), file.get()) != text.size() ||
         std::fflush(file.get()) != 0)
-      throw NotSealed(std::strerror(errno));
+      fail();
   };
   append(index);
   append(fmt::format("{}{:0{}}", kMark, index.size(), kLength));
@@ -82,14 +85,14 @@ bool SealedFile::is_marked(const fs::path& path) {
   std::error_code code;
   if (!fs::is_regular_file(path, code)) return false;
   try {
-    return !seal_of(opened(path, "rb").get()).empty();
+    return !seal_of(opened(path).get()).empty();
   } catch (const NotSealed&) {
     return false;
   }
 }
 
 SealedFile::SealedFile(const fs::path& path, const std::function<void(double)>& progress)
-    : file_(opened(path, "rb").release()) {
+    : file_(opened(path).release()) {
   const std::string seal = seal_of(file_.get());
   if (seal.empty()) throw NotSealed("the seal at its end is missing");
   const std::uint64_t before = size_of(file_.get()) - kDigest;

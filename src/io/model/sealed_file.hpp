@@ -23,7 +23,7 @@ struct NotSealed : std::runtime_error {
 /// positions.
 class SealedFile {
  public:
-  /// Appends index and seal to a file. Throws NotSealed on an error of the disk.
+  /// Appends index and seal to a file. Throws std::system_error on an error of the disk.
   static void seal(const std::filesystem::path& path, const std::string& index);
   /// Whether a file ends with the mark of a seal; it may still be damaged.
   static bool is_marked(const std::filesystem::path& path);

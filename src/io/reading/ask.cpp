@@ -149,6 +149,11 @@ std::function<std::string(std::string_view, std::string_view)>& here() {
 
 }  // namespace
 
+std::string this_release() {
+  const std::string whole = version();
+  return whole.substr(0, whole.find('+'));
+}
+
 ChildLimits limits_for(const fs::path& path) {
   std::error_code code;
   const bool regular = fs::is_regular_file(path, code);
@@ -176,7 +181,7 @@ Result<std::string> answer_bytes(std::string_view task, const fs::path& path, st
   const Result<fs::path> program = find_reading_program();
   if (!program) return program.error();
   const ChildLimits limits = limits_for(path);
-  ReadingRequest request{.version = version(),
+  ReadingRequest request{.release = this_release(),
                          .parent = ::getpid(),
                          .cpu_s = limits.cpu_s,
                          .bytes = limits.memory_bytes,

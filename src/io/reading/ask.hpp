@@ -19,14 +19,17 @@ namespace stylet::detail {
 
 /// The request that the program reads from its standard input.
 struct ReadingRequest {
-  std::string version;    ///< of the asking program, which must be that of the reading one
+  std::string release;    ///< of the asking program, which must be that of the reading one
   long parent = 0;        ///< process number of the asking program
   double cpu_s = 0.0;     ///< limit of processor time
   std::size_t bytes = 0;  ///< limit of memory, beyond what the program itself takes
   std::string task;       ///< name
   std::string arguments;  ///< path and arguments of the task, by wire.hpp
 };
-void fields(auto& wire, ReadingRequest& r) { wire(r.version, r.parent, r.cpu_s, r.bytes, r.task, r.arguments); }
+void fields(auto& wire, ReadingRequest& r) { wire(r.release, r.parent, r.cpu_s, r.bytes, r.task, r.arguments); }
+
+/// The release that this program is of, as "0.2.0": requests and answers are the same in all builds of a release.
+std::string this_release();
 
 /// Limits for reading one file or searching one folder: generous for valid files of its packed and unpacked size, but
 /// short enough that a malicious file does not seem to hang the program. The unpacked size that a file claims is

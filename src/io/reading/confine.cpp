@@ -37,7 +37,8 @@ void refuse_changes_of_files() {
   ::close(ruleset);
 }
 
-/// What a parser and the libraries below it call. Opening files and signals have conditions of their own.
+/// The system calls that a parser and the libraries below it make. Opening files and signals have conditions of their
+/// own.
 constexpr std::array kAllowed{
     // files that are open, and what a path leads to
     "read", "readv", "pread64", "write", "writev", "close", "lseek", "fstat", "fstat64", "stat", "lstat", "newfstatat",

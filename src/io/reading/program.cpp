@@ -76,7 +76,7 @@ std::optional<ReadingRequest> take_request() {
     ReadingRequest request;
     WireReader wire(bytes);
     wire(request);
-    if (request.version == version()) return request;
+    if (request.release == this_release()) return request;
   } catch (const std::exception&) {
     // Another version may have another form of request.
   }
@@ -99,9 +99,10 @@ int run_reading_program(TaskTable table) {
   }
   const std::optional<ReadingRequest> request = take_request();
   if (!request) {
-    const Error error = failure(
-        "stylet-reader", fmt::format("this is version {}, the program that asks it to read is another one", version()),
-        "Install both from one package, or set STYLET_READER to the stylet-reader of the same version");
+    const Error error =
+        failure("stylet-reader",
+                fmt::format("this is version {}, the program that asks it to read is another one", this_release()),
+                "Install both from one package, or set STYLET_READER to the stylet-reader of the same version");
     return write_answer(error_bytes(error)) ? 0 : 3;
   }
   if (::getppid() != request->parent) return 3;  // it ended before this process could ask to end with it

@@ -148,12 +148,6 @@ void fail(const char* action) {
   throw Failure(action, number);
 }
 
-Handle create_file(const char* path) {
-  const Handle access(check(H5Pcreate(H5P_FILE_ACCESS), "create file"), H5Pclose);
-  check(H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST), "create file");
-  return {check(H5Fcreate(path, H5F_ACC_TRUNC, timeless(H5P_FILE_CREATE), access), "create file"), H5Fclose};
-}
-
 Handle open_growing_file(const char* path) {
   // The first wait is 1 ns and each further one twice as long: 28 attempts take 0.13 s; HDF5's default of 100 attempts
   // would never end.

@@ -71,9 +71,6 @@ class Handle {
   herr_t (*close_)(hid_t) = nullptr;
 };
 
-/// Creates a file in the latest format, in which all metadata have checksums. An existing file is replaced. Neither the
-/// file nor its objects have time stamps, so that the same content gives the same bytes.
-Handle create_file(const char* path);
 /// Opens a file for reading that another process may be writing (SWMR), or was writing when it was killed. Since a
 /// wrong checksum may belong to a block that is being written, HDF5 repeats reading for at most a seventh of a second.
 Handle open_growing_file(const char* path);

@@ -1,87 +1,44 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "output_folder.hpp"
 
-#include "detail/whole_file.hpp"
+#include "detail/unfinished.hpp"
 #include "stylet/core/printable.hpp"
+#include "stylet/io/files.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <charconv>
-#include <cstdio>
-#include <cstring>
 
 namespace stylet::results {
 namespace fs = std::filesystem;
 
 namespace {
 
-/// The reason of a failed stream operation, taken before anything else can change errno.
-std::string system_reason() { return std::strerror(errno); }
-
 Result<> write_all(const std::vector<File>& files, const fs::path& folder) {
   for (const File& file : files) {
-    if (auto done = write_file(folder / file.name, file.content); !done) return done;
+    if (auto done = write_whole_file(folder / file.name, file.content); !done) return done;
   }
   return Ok{};
 }
 
 /// Writes the files into a folder with a hidden name, which is then renamed to `folder` in one step.
 Result<> write_new_folder(const std::vector<File>& files, const fs::path& folder) {
-  const fs::path parent = folder.has_parent_path() ? folder.parent_path() : fs::path(".");
-  if (auto ready = prepare_folder(parent); !ready) return ready;
-  const fs::path hidden = parent / fmt::format(".{}.{}.part", folder.filename().string(), ::getpid());
-  std::error_code code;
-  fs::create_directory(hidden, code);
-  if (code) return write_error(hidden, code.message());
-  Result<> done = write_all(files, hidden);
-  if (done) {
-    fs::rename(hidden, folder, code);
-    if (code) done = write_error(folder, code.message());
+  if (auto ready = prepare_folder(folder.has_parent_path() ? folder.parent_path() : "."); !ready) return ready;
+  auto hidden = detail::Unfinished::create(folder, detail::Unfinished::Kind::folder);
+  if (!hidden) return hidden.error();
+  if (auto done = write_all(files, hidden->path()); !done) {
+    Error error = done.error();  // of the place that the user knows
+    error.where = (folder / fs::path(error.where).filename()).string();
+    return error;
   }
-  std::error_code ignored;
-  if (!done) fs::remove_all(hidden, ignored);
-  return done;
+  return hidden->finish();
 }
 
 }  // namespace
 
-Error write_error(const fs::path& path, const std::string& reason) {
-  return failure(path.string(), "cannot be written: " + reason,
-                 "Check the free space and the permissions of the result folder");
-}
-
-Result<> write_file(const fs::path& path, std::string_view content) {
-  return detail::write_whole(path, [&](const fs::path& temporary) -> Result<> {
-    std::FILE* stream = std::fopen(temporary.c_str(), "wb");
-    if (stream == nullptr) return write_error(path, system_reason());
-    if (std::fwrite(content.data(), 1, content.size(), stream) != content.size()) {
-      const std::string reason = system_reason();
-      std::fclose(stream);
-      return write_error(path, reason);
-    }
-    if (std::fclose(stream) != 0) return write_error(path, system_reason());
-    return Ok{};
-  });
-}
-
 Result<> prepare_folder(const fs::path& folder) {
-  const auto refuse = [&](const std::string& reason) {
-    return input_error("result folder " + folder.string(), reason,
-                       "Choose another folder with -o, or change its permissions");
-  };
-  std::error_code code;
-  fs::create_directories(folder, code);
-  if (code) return refuse("cannot be created: " + code.message());
-  if (!fs::is_directory(folder, code)) return refuse("exists and is not a folder");
-  std::string probe = (folder / ".stylet-XXXXXX").string();
-  const int descriptor = mkstemp(probe.data());
-  if (descriptor < 0) return refuse("cannot be written to: " + system_reason());
-  std::FILE* stream = fdopen(descriptor, "wb");
-  if (stream != nullptr) std::fclose(stream);
-  fs::remove(probe, code);
-  return Ok{};
+  if (auto made = make_folder(folder); !made) return made;
+  return check_writable(folder);
 }
 
 Result<> write_folder(const std::vector<File>& files, const fs::path& folder) {

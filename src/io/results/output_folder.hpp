@@ -13,9 +13,6 @@ namespace stylet::results {
 /// Creates `folder` and its parents if necessary, and checks that files can be created in it.
 Result<> prepare_folder(const std::filesystem::path& folder);
 
-/// Writes `content` to the file `path`. On error no incomplete file is left.
-Result<> write_file(const std::filesystem::path& path, std::string_view content);
-
 /// Name and content of a file to write.
 struct File {
   std::string name;
@@ -29,9 +26,6 @@ Result<> write_folder(const std::vector<File>& files, const std::filesystem::pat
 
 /// A text as a quoted field of a CSV file.
 std::string csv_text(std::string_view text);
-
-/// The error of all writers of the result folder if writing fails; it names the file and the system's reason.
-Error write_error(const std::filesystem::path& path, const std::string& reason);
 
 /// Removes a file of an earlier run, if it exists.
 Result<> remove_earlier(const std::filesystem::path& path);

@@ -2,6 +2,7 @@
 #include "paraview.hpp"
 
 #include "output_folder.hpp"
+#include "stylet/io/files.hpp"
 #include "stylet/io/mesh_io.hpp"
 
 #include <fmt/format.h>
@@ -113,18 +114,18 @@ Result<> write_tissue(const RunRecording& run, const std::function<MatX(const Ve
     report(progress, "tissue files", static_cast<double>(f + 1) / static_cast<double>(run.frames.size()));
   }
   if (auto removed = remove_series_from(folder, "tissue", ".vtu", run.frames.size()); !removed) return removed;
-  return write_file(folder / "tissue.pvd", collection(run.frames, "tissue", ".vtu"));
+  return write_whole_file(folder / "tissue.pvd", collection(run.frames, "tissue", ".vtu"));
 }
 
 Result<> write_needle(const RunRecording& run, std::size_t deepest, const fs::path& folder) {
   for (std::size_t f = 0; f < run.frames.size(); ++f) {
     const std::string vtp = needle_vtp(run.frames[f], run.info.needle_diameter_mm);
-    if (auto done = write_file(folder / series_name("needle", f, ".vtp"), vtp); !done) return done;
+    if (auto done = write_whole_file(folder / series_name("needle", f, ".vtp"), vtp); !done) return done;
     if (f != deepest) continue;
-    if (auto done = write_file(folder / "needle.vtp", vtp); !done) return done;
+    if (auto done = write_whole_file(folder / "needle.vtp", vtp); !done) return done;
   }
   if (auto removed = remove_series_from(folder, "needle", ".vtp", run.frames.size()); !removed) return removed;
-  return write_file(folder / "needle.pvd", collection(run.frames, "needle", ".vtp"));
+  return write_whole_file(folder / "needle.pvd", collection(run.frames, "needle", ".vtp"));
 }
 
 }  // namespace stylet::results

@@ -10,7 +10,9 @@ namespace stylet::results {
 
 namespace {
 constexpr std::chrono::milliseconds kPeriod{200};  // between flushes; the documented limit is 0.5 s
-}
+// Between waits for the disk: what a power cut costs, and little enough that the wait at the end is short.
+constexpr std::chrono::seconds kOnDisk{5};
+}  // namespace
 
 Recorder::Recorder(RunFileWriter writer)
     : writer_(std::move(writer)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
@@ -45,6 +47,7 @@ Result<> Recorder::write_pending() {
 }
 
 void Recorder::run(const std::stop_token& stop) {
+  auto on_disk = std::chrono::steady_clock::now();
   while (!stop.stop_requested()) {
     std::uint64_t asked = 0;
     {
@@ -61,7 +64,12 @@ void Recorder::run(const std::stop_token& stop) {
     survive(
         "the recording",
         [&] {
-          if (auto done = write_pending(); !done) fail(done.error());
+          Result<> done = write_pending();
+          if (const auto now = std::chrono::steady_clock::now(); done && now - on_disk >= kOnDisk) {
+            done = writer_.sync();
+            on_disk = now;
+          }
+          if (!done) fail(done.error());
         },
         fail);
     {

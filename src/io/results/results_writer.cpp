@@ -9,6 +9,7 @@
 #include "recorder.hpp"
 #include "report/report_html.hpp"
 #include "stylet/core/survive.hpp"
+#include "stylet/io/files.hpp"
 #include "stylet/io/hole_map_io.hpp"
 #include "stylet/io/recording_io.hpp"
 #include "summary_json.hpp"
@@ -31,9 +32,9 @@ Result<> write_pictures(const Pictures& pictures, const fs::path& folder) {
     for (const char* name : picture_names()) fs::remove(folder / name, code);
     return Ok{};
   }
-  fs::create_directories(folder, code);
+  if (auto made = make_folder(folder); !made) return made;
   for (const auto& [name, png] : pictures.png) {
-    if (auto done = write_file(folder / name, png); !done) return done;
+    if (auto done = write_whole_file(folder / name, png); !done) return done;
   }
   return Ok{};
 }
@@ -66,12 +67,12 @@ Result<> write_from_recording(const fs::path& folder, const Summary& summary,
   run->summary = summary;
   const Moments moments = find_moments(run->frames);
   const auto regions = region_views(run->mesh, run->info.target_regions);
-  if (auto done = write_file(folder / "forces.csv", record::csv_of(run->steps)); !done) return done;
+  if (auto done = write_whole_file(folder / "forces.csv", record::csv_of(run->steps)); !done) return done;
   if (!summary.gland_path.empty()) {
-    if (auto done = write_file(folder / "gland.csv", record::csv_of(summary.gland_path)); !done) return done;
+    if (auto done = write_whole_file(folder / "gland.csv", record::csv_of(summary.gland_path)); !done) return done;
   }
   if (map) {
-    if (auto done = write_file(folder / "map.csv", hole_map_csv(*map)); !done) return done;
+    if (auto done = write_whole_file(folder / "map.csv", hole_map_csv(*map)); !done) return done;
   }
   if (auto done = write_tissue(*run, stress_of, folder, progress); !done) return done;
   if (auto done = write_needle(*run, moments.deepest, folder); !done) return done;
@@ -81,8 +82,8 @@ Result<> write_from_recording(const fs::path& folder, const Summary& summary,
   report(progress, "report", 0.0);
   auto page = report_html(*run, regions, moments, pictures, map, probe);
   if (!page) return page.error();
-  if (auto done = write_file(folder / "report.html", *page); !done) return done;
-  if (auto done = write_file(folder / "summary.json", summary_json(summary, probe)); !done) return done;
+  if (auto done = write_whole_file(folder / "report.html", *page); !done) return done;
+  if (auto done = write_whole_file(folder / "summary.json", summary_json(summary, probe)); !done) return done;
   report(progress, "report", 1.0);
   return Ok{};
 }

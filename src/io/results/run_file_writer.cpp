@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run_file_writer.hpp"
 
+#include "detail/disk.hpp"
+#include "detail/unfinished.hpp"
 #include "h5_mesh.hpp"
-#include "output_folder.hpp"
 #include "record/attributes.hpp"
 #include "run_file_format.hpp"
 #include "summary_json.hpp"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <charconv>
-#include <csignal>
-#include <system_error>
 
 namespace stylet::results {
 namespace fs = std::filesystem;
@@ -46,48 +40,24 @@ void write_plan(hid_t group, const RecordedPlan& plan) {
   record::write_rows(group, "planned_seeds", stored.seeds);
 }
 
-fs::path hidden_name(const fs::path& path, const std::string& process) {
-  return path.parent_path() / fmt::format(".{}.{}.part{}", path.stem().string(), process, path.extension().string());
-}
-
-/// Removes temporary files of processes that ended before they could rename them.
-void remove_abandoned(const fs::path& path) {
-  const std::string before = fmt::format(".{}.", path.stem().string());
-  std::vector<fs::path> abandoned;
-  std::error_code code;
-  for (fs::directory_iterator entry(path.parent_path(), code), end; !code && entry != end; entry.increment(code)) {
-    const std::string name = entry->path().filename().string();
-    if (!name.starts_with(before)) continue;
-    const std::string process = name.substr(before.size(), name.find('.', before.size()) - before.size());
-    int number = 0;
-    const auto parsed = std::from_chars(process.data(), process.data() + process.size(), number);
-    if (parsed.ec != std::errc{} || number <= 0 || entry->path() != hidden_name(path, process)) continue;
-    if (::kill(number, 0) != 0 && errno == ESRCH) abandoned.push_back(entry->path());
-  }
-  for (const fs::path& file : abandoned) fs::remove(file, code);
-}
-
 }  // namespace
 
 template <class Action>
 Result<> RunFileWriter::guarded(Action action) const {
-  const h5::LibraryTurn turn;
-  try {
+  return h5::written(path_, [&] {
     action();
-    return Ok{};
-  } catch (const h5::Failure& e) {
-    return write_error(path_, e.what());
-  }
+    file_.check();
+  });
 }
 
 Result<RunFileWriter> RunFileWriter::create(const fs::path& path, const RunInfo& info, const TetMesh& mesh,
                                             const std::function<Result<>()>& make_way, const RecordedPlan* plan) {
   // The new file gets another name first: truncating an earlier file in place would break processes that read it.
-  remove_abandoned(path);
-  const fs::path hidden = hidden_name(path, std::to_string(::getpid()));
+  auto hidden = detail::Unfinished::create(path, detail::Unfinished::Kind::file);
+  if (!hidden) return hidden.error();
   RunFileWriter w(path);
   Result<> done = w.guarded([&] {
-    w.file_ = h5::create_file(hidden.c_str());
+    w.file_ = h5::NewFile(hidden->path().c_str());
     h5::write_mesh(w.file_, mesh);
     write_info(w.file_, info);
     h5::write_attribute(w.file_, "start_sha256", start_digest(info, mesh));
@@ -114,13 +84,10 @@ Result<RunFileWriter> RunFileWriter::create(const fs::path& path, const RunInfo&
     h5::check(H5Fstart_swmr_write(w.file_), "start recording");
   });
   if (done && make_way) done = make_way();
-  std::error_code code;
-  if (done) fs::rename(hidden, path, code);
-  if (code) done = write_error(path, code.message());
+  if (done) done = hidden->finish();
   if (done) return w;
   const h5::LibraryTurn turn;
   w = RunFileWriter(path);
-  fs::remove(hidden, code);
   return done.error();
 }
 
@@ -167,6 +134,8 @@ Result<> RunFileWriter::flush() {
   return guarded([&] { h5::check(H5Fflush(file_, H5F_SCOPE_GLOBAL), "flush"); });
 }
 
+Result<> RunFileWriter::sync() { return detail::sync(path_); }
+
 Result<> RunFileWriter::close() {
   Result<> ended = guarded([&] {
     h5::check(H5Fflush(file_, H5F_SCOPE_GLOBAL), "flush");  // all other data must reach the disk before /end
@@ -181,9 +150,11 @@ Result<> RunFileWriter::close() {
   Result<> closed = guarded([&] {
     bool good = std::apply([](auto&... table) { return (table.close() & ...); }, tables_);
     for (h5::Handle* data : {&displacement_, &needle_, &summary_}) good = data->reset() && good;
-    if (!file_.reset() || !good) h5::fail("close");
+    file_.close();
+    if (!good) h5::fail("close");
   });
-  return ended ? closed : ended;
+  if (!ended || !closed) return ended ? closed : ended;
+  return sync();
 }
 
 }  // namespace stylet::results

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "h5_new_file.hpp"
 #include "run_file_format.hpp"
 #include "stylet/core/result.hpp"
 #include "stylet/geom/tet_mesh.hpp"
@@ -40,16 +41,17 @@ class RunFileWriter {
   /// Writes the summary, and those of its events that are not in the file yet. To be called once, at the end.
   Result<> append_summary(const Summary& summary);
   Result<> flush();  ///< writes all appended data to the file
+  Result<> sync();   ///< waits until all flushed data are on the disk
   Result<> close();  ///< writes /end and closes the file
 
  private:
   explicit RunFileWriter(std::filesystem::path path) : path_(std::move(path)) {}
-  /// Runs `action` and converts exceptions of HDF5 to an Error that names the file.
+  /// Runs `action` and converts exceptions of HDF5 and of the disk to an Error that names the file.
   template <class Action>
   Result<> guarded(Action action) const;
 
   std::filesystem::path path_;
-  h5::Handle file_;
+  h5::NewFile file_;
   template <class T>
   record::Table<T>& table() {
     return std::get<record::Table<T>>(tables_);

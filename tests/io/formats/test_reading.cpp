@@ -31,8 +31,8 @@ ChildOutcome end_within(const std::string& how, const ChildLimits& limits) {
   WireWriter arguments, wire;
   std::string path = "x", way = how;
   arguments(path, way);
-  ReadingRequest request{version(),      ::getpid(), limits.cpu_s, limits.memory_bytes, std::string(kEnd.name),
-                         arguments.bytes};
+  ReadingRequest request{this_release(),         ::getpid(),     limits.cpu_s, limits.memory_bytes,
+                         std::string(kEnd.name), arguments.bytes};
   wire(request);
   return run_program(MISBEHAVING_READER, wire.bytes, limits);
 }
@@ -160,7 +160,7 @@ TEST(Reading, a_program_that_is_missing_or_of_another_version_is_said) {
   ASSERT_EQ(outcome.end, ChildEnd::finished);
   const Result<bool> answer = from_bytes<bool>(outcome.result);
   ASSERT_FALSE(answer.ok());
-  EXPECT_NE(answer.error().message().find(version()), std::string::npos);
+  EXPECT_NE(answer.error().message().find(this_release()), std::string::npos);
 }
 
 TEST(Reading, the_limit_grows_with_what_a_file_unpacks_to) {

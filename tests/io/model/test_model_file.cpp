@@ -3,7 +3,7 @@
 #include "box.hpp"
 #include "io/formats/files.hpp"
 
-#include "h5.hpp"
+#include "h5_new_file.hpp"
 #include "model/sealed_file.hpp"
 #include "stylet/io/model_file.hpp"
 #include "stylet/sim/simulation.hpp"
@@ -276,7 +276,7 @@ TEST(SavedModel, other_files_and_versions_are_named) {
   test::write_file(folder / "text.stylet", "[patient]\n");
   EXPECT_SAYS(refusal(folder / "text.stylet"), "not a saved model");
   {
-    const h5::Handle other = h5::create_file((folder / "other.stylet").c_str());
+    const h5::NewFile other((folder / "other.stylet").c_str());
     h5::write_attribute(other, "format", std::string("stylet-run"));
   }
   EXPECT_SAYS(refusal(folder / "other.stylet"), "an earlier version of stylet saved it");

@@ -62,7 +62,7 @@ inline void expect_same_frame(const Frame& a, const Frame& b) {
 }
 
 inline void expect_same_run(const RunRecording& a, const RunRecording& b) {
-  EXPECT_EQ(start_digest(a.info, a.mesh), start_digest(b.info, b.mesh));
+  EXPECT_EQ(results::start_digest(a.info, a.mesh), results::start_digest(b.info, b.mesh));
   expect_same_rows(a.steps, b.steps);
   expect_same_rows(a.events, b.events);
   ASSERT_EQ(a.frames.size(), b.frames.size());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tests of the lists of fields: each record comes back from a file as it was written, and docs/results says what the
 // lists say.
+#include "h5_new_file.hpp"
 #include "record/attributes.hpp"
 #include "record/csv.hpp"
 #include "record/implant_columns.hpp"
@@ -113,7 +114,7 @@ TYPED_TEST(RecordInRows, comes_back_with_every_value) {
   std::vector<TypeParam> wrote;
   for (unsigned seed = 0; seed < 20; ++seed) wrote.push_back(random_record<kFile, TypeParam>(seed));
   const h5::LibraryTurn turn;
-  const h5::Handle file = h5::create_file((folder / "rows.h5").c_str());
+  const h5::NewFile file((folder / "rows.h5").c_str());
   record::write_rows(file, "rows", record::rows_of(std::span<const TypeParam>(wrote)));
   const auto rows = record::read_rows<TypeParam>(file, "rows");
   ASSERT_EQ(rows.size(), wrote.size());
@@ -145,7 +146,7 @@ TYPED_TEST(RecordInRows, of_a_file_that_lacks_a_column_or_has_an_unknown_one_is_
   const h5::LibraryTurn turn;
   for (const auto& left_out : columns) {
     const Folder folder;
-    const h5::Handle file = h5::create_file((folder / "rows.h5").c_str());
+    const h5::NewFile file((folder / "rows.h5").c_str());
     // The same row in a type without the column, whose place is called otherwise.
     const h5::Handle now = record::row_type<TypeParam>(), then = h5::compound_type(H5Tget_size(now));
     for (unsigned k = 0; k < static_cast<unsigned>(H5Tget_nmembers(now)); ++k) {
@@ -174,7 +175,7 @@ TYPED_TEST(RecordInRows, of_a_file_that_lacks_a_column_or_has_an_unknown_one_is_
 TYPED_TEST(RecordInAttributes, comes_back_with_every_value) {
   const Folder folder;
   const h5::LibraryTurn turn;
-  const h5::Handle file = h5::create_file((folder / "attributes.h5").c_str());
+  const h5::NewFile file((folder / "attributes.h5").c_str());
   const auto wrote = random_record<kFile, TypeParam>(5);
   record::write_attributes(file, wrote);
   TypeParam read{};

@@ -3,10 +3,10 @@
 #include "stylet/io/implant_record_io.hpp"
 
 #include "detail/input_file.hpp"
-#include "detail/whole_file.hpp"
+#include "detail/unfinished.hpp"
 #include "dose/dvh_table.hpp"
+#include "h5_new_file.hpp"
 #include "implant/stored_implant.hpp"
-#include "output_folder.hpp"
 #include "reading/ask.hpp"
 #include "stylet/core/version.hpp"
 #include "stylet/io/scenario_io.hpp"
@@ -50,15 +50,11 @@ ImplantRecord implant_record(const ImplantOutcome& outcome) {
 }
 
 Result<> write_implant_record(ImplantRecord record, const fs::path& path) {
-  return detail::write_whole(path, [&](const fs::path& temporary) -> Result<> {
-    const h5::LibraryTurn turn;
-    try {
-      write_stored_implant(temporary.c_str(), std::move(record));
-      return Ok{};
-    } catch (const h5::Failure& e) {
-      return write_error(path, e.what());
-    }
-  });
+  auto hidden = detail::Unfinished::create(path, detail::Unfinished::Kind::file);
+  if (!hidden) return hidden.error();
+  const auto write = [&] { write_stored_implant(hidden->path().c_str(), std::move(record)); };
+  if (auto done = h5::written(path, write); !done) return done;
+  return hidden->finish();
 }
 
 Result<ImplantRecord> read_implant_record(const fs::path& path) {

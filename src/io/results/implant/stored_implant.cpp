@@ -2,6 +2,7 @@
 #include "implant/stored_implant.hpp"
 
 #include "h5_mesh.hpp"
+#include "h5_new_file.hpp"
 #include "model/digest.hpp"
 #include "record/attributes.hpp"
 
@@ -283,7 +284,7 @@ ImplantRecord whole_implant_in(hid_t file) {
 }  // namespace
 
 void write_stored_implant(const char* path, ImplantRecord record) {
-  h5::Handle file = h5::create_file(path);
+  h5::NewFile file(path);
   h5::write_attribute(file, "format", std::string(kImplantFileFormat));
   h5::write_attribute(file, "format_version", std::array{implant_file_version()});
   h5::write_attribute(file, "units", std::string("mm, N, s, Gy"));
@@ -292,7 +293,7 @@ void write_stored_implant(const char* path, ImplantRecord record) {
   ImplantFile writer(file, seal, true);
   contents(writer, record);
   h5::write_attribute(file, "content_sha256", seal.finish());
-  if (!file.reset()) h5::fail("close");
+  file.close();
 }
 
 Result<ImplantRecord> parse_implant_file(const std::filesystem::path& path) {

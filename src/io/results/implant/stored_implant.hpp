@@ -20,7 +20,7 @@ inline int implant_file_version() {
 inline constexpr const char* kGiveAnImplant =
     "Give a run.h5 that `stylet implant` wrote; if it is damaged, use another copy or repeat the implant";
 
-/// Writes the record into a new file. Throws h5::Failure.
+/// Writes the record into a new file, for h5::written().
 void write_stored_implant(const char* path, ImplantRecord record);
 
 /// Reads a whole file and compares its content with its digest. To be called in the reading program, as

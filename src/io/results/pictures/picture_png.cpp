@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "detail/whole_file.hpp"
+#include "stylet/io/files.hpp"
 #include "stylet/io/picture_io.hpp"
 
 #include <fmt/format.h>
@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 namespace stylet {
 
@@ -144,13 +143,8 @@ Result<> write_picture_png(const GreyPicture& original, const PictureMarks& mark
   vtkUnsignedCharArray* const bytes = writer->GetResult();
   if (bytes == nullptr || bytes->GetNumberOfValues() == 0)
     return failure(path.string(), "the PNG encoder failed", "Write a .mha file instead");
-  return detail::write_whole(path, [&](const std::filesystem::path& temporary) -> Result<> {
-    std::ofstream file(temporary, std::ios::binary);
-    file.write(reinterpret_cast<const char*>(bytes->GetPointer(0)), bytes->GetNumberOfValues());
-    file.close();
-    if (!file) return failure(path.string(), "cannot be written", "Check the folder and the free space on its disk");
-    return Ok{};
-  });
+  return write_whole_file(path, {reinterpret_cast<const char*>(bytes->GetPointer(0)),
+                                 static_cast<std::size_t>(bytes->GetNumberOfValues())});
 }
 
 }  // namespace stylet
