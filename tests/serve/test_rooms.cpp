@@ -164,6 +164,18 @@ struct InSession {
   }
 };
 
+/// A drop that ImplantDesk::add() accepts.
+ProbedDrop some_drop() {
+  ProbedDrop made;
+  made.tip_in_tissue = made.found = true;
+  made.axis = {0.0, 0.0, 1.0};
+  return made;
+}
+
+std::optional<InterruptedImplant> interrupted_in(const LiveNeedle& needle) {
+  return find_interrupted(Shelf(needle.folder.path), needle.start.implant->plan(), false);
+}
+
 }  // namespace
 
 TEST(OpenCase, names_what_to_open_and_refuses_what_is_not_there) {
@@ -323,30 +335,53 @@ TEST(OpenCase, offers_an_interrupted_implant_and_takes_it_up_to_the_last_bits) {
 
 TEST(OpenCase, leaves_an_interrupted_implant_that_nobody_wants) {
   LiveNeedle first(implant_case());
-  ProbedDrop made;
-  made.tip_in_tissue = made.found = true;
-  made.axis = {0.0, 0.0, 1.0};
-  ASSERT_TRUE(first.start.implant->add(made));
+  EXPECT_FALSE(interrupted_in(first)) << "nothing was done to the seeds";
+  ASSERT_TRUE(first.start.implant->add(some_drop()));
   (void)first.live.follow_implant();
-  const auto finds = [&] {
-    OpenCase other(first.settings);
-    const Reply wish = other.ask(ask_for(Do::open_case));
-    EXPECT_TRUE(other.open(std::get<ToOpen>(wish.next), {}));
-    SessionStatus status;
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(2);
-    while (!status.interrupted && std::chrono::steady_clock::now() < end) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      other.describe(status);
-    }
-    if (!status.interrupted) return false;
-    EXPECT_EQ(refused_by(other.ask(ask_for(Do::interrupted, 0.0))), "");
+  ASSERT_TRUE(interrupted_in(first));
+  OpenCase other(first.settings);
+  const Reply wish = other.ask(ask_for(Do::open_case));
+  ASSERT_TRUE(other.open(std::get<ToOpen>(wish.next), {}));
+  SessionStatus status;
+  first.until([&] {
     other.describe(status);
-    EXPECT_FALSE(status.interrupted);
-    return true;
-  };
-  EXPECT_TRUE(finds());
+    return status.interrupted.has_value();
+  });
+  EXPECT_EQ(refused_by(other.ask(ask_for(Do::interrupted, 0.0))), "");
+  other.describe(status);
+  EXPECT_FALSE(status.interrupted);
   (void)first.live.ask(ask_for(Do::clear));
-  EXPECT_FALSE(finds()) << "its seeds were all taken back";
+  EXPECT_FALSE(interrupted_in(first)) << "its seeds were all taken back";
+}
+
+TEST(FindInterrupted, takes_the_last_needle_also_the_next_day_and_among_other_recordings) {
+  LiveNeedle needle(implant_case());
+  needle.start.implant->count({EventKind::region_entered, 1.0, 60.0, 1.0, "rectum"});
+  const auto next = [&](std::size_t which) {
+    needle.start.needle = which;
+    needle.start.name = needle.start.implant->plan().needles[which].name;
+    EXPECT_TRUE(needle.live.enter(needle.start));
+    EXPECT_TRUE(needle.start.implant->add(some_drop()));
+    (void)needle.live.follow_implant();
+  };
+  next(1);
+  next(0);  // mostly in the same second, in which the names are not in the order of time
+  ASSERT_TRUE(interrupted_in(needle));
+  EXPECT_EQ(interrupted_in(needle)->needle, 0u);
+  next(1);
+  const std::string last = needle.status().recording.name;
+  const Shelf shelf(needle.folder.path);
+  for (const std::string& name : shelf.names())
+    std::filesystem::rename(shelf.folder(name), needle.folder.path / ("2026-01-01" + name.substr(10)));
+  const auto implant = std::exchange(needle.start.implant, nullptr);
+  ASSERT_TRUE(needle.live.enter(needle.start)) << "a newer recording, which has no plan";
+  needle.start.implant = implant;
+  const auto found = interrupted_in(needle);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->recording, "2026-01-01" + last.substr(10));
+  EXPECT_EQ(found->needle, 1u);
+  EXPECT_EQ(found->seeds.size(), 3u);
+  EXPECT_EQ(found->tally, ImplantTally{.organ_entries = 1});
 }
 
 TEST(LiveRoom, says_in_each_recording_what_the_needles_before_have_done) {
