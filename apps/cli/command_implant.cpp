@@ -206,7 +206,7 @@ Result<> run_implant(const ImplantArguments& arguments, Console& console) {
   const std::filesystem::path folder = result_folder(arguments.output, arguments.scenario);
   need(check_output_folder(folder));
   need(check_found_is_no_result(arguments.found, folder));
-  warn_before_start(arguments.scenario, arguments.settings, console);
+  warn_before_start(arguments.scenario, arguments.settings, Work::all, console);
   auto outcome = need(implant(scenario, arguments.scenario,
                               {.compensate = arguments.compensate,
                                .span = arguments.span,

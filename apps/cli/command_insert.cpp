@@ -231,7 +231,7 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
                        "Give the scenario of the recording instead, or leave --map out");
   }
 
-  warn_before_start(arguments.scenario, arguments.settings, console);
+  warn_before_start(arguments.scenario, arguments.settings, Work::all, console);
   auto source = what_to_run(arguments, console.progress());
   const PreparedModel& prepared = source.prepared;
   const bool repeats = !source.steps.empty();

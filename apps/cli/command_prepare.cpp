@@ -54,7 +54,7 @@ Result<> run_prepare(const PrepareArguments& arguments, Console& console) {
   const auto file = output_file(arguments);
   const std::filesystem::path& output = file;
   need(check_output_file(output));
-  warn_before_start(arguments.scenario, arguments.settings, console);
+  warn_before_start(arguments.scenario, arguments.settings, Work::preparation, console);
   const auto prepared = need(prepare_model_file(arguments.scenario, arguments.settings, console.progress()));
   const Model& model = *prepared.model;
   const auto start = std::chrono::steady_clock::now();

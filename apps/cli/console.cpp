@@ -16,6 +16,7 @@
 #include <cstring>
 #include <mutex>
 #include <set>
+#include <utility>
 
 namespace stylet::cli {
 
@@ -45,6 +46,7 @@ struct Console::Parts {
   int json_descriptor = -1;                ///< the real standard output while --json - redirects stdout to stderr
   std::mutex mutex;                        ///< guards the next member: stylet serve warns from several threads
   std::set<std::string> told;              ///< warnings that were given ahead
+  std::string first_progress;              ///< a sentence to print before the first progress
   std::weak_ptr<ProgressDisplay> display;  ///< exists while progress may be reported
 
   /// Prints a line. Every text of the program passes here on its way to the terminal, so this is where control
@@ -121,9 +123,11 @@ void Console::warn_ahead(const std::string& text) {
 
 void Console::error(std::string_view text) { parts_->line(stderr, "stylet: error: ", text); }
 
+void Console::tell_with_progress(const std::string& text) { parts_->first_progress = text; }
+
 Progress Console::progress() {
   if (parts_->options.quiet) return {};
-  auto display = std::make_shared<ProgressDisplay>(stderr_is_terminal());
+  auto display = std::make_shared<ProgressDisplay>(stderr_is_terminal(), std::exchange(parts_->first_progress, {}));
   parts_->display = display;
   return [display](std::string_view stage, double fraction) { display->update(stage, fraction); };
 }

@@ -47,6 +47,9 @@ class Console {
   void warn_ahead(const std::string& text);
   void error(std::string_view text);
 
+  /// Prints a sentence on standard error before the first progress that is shown: only work that takes longer than a
+  /// moment needs it.
+  void tell_with_progress(const std::string& text);
   /// Shows the progress of long work: a bar if standard error is a terminal, otherwise plain lines from time to time.
   /// Shows nothing in the first second and with --quiet. Ends when the last copy of the returned function is destroyed.
   [[nodiscard]] Progress progress();

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 namespace stylet::cli {
 
@@ -35,7 +36,8 @@ int terminal_width() {
 
 }  // namespace
 
-ProgressDisplay::ProgressDisplay(bool terminal) : terminal_(terminal), thread_([this] { run(); }) {}
+ProgressDisplay::ProgressDisplay(bool terminal, const std::string& first)
+    : terminal_(terminal), first_(printable_lines(first)), thread_([this] { run(); }) {}
 
 ProgressDisplay::~ProgressDisplay() {
   {
@@ -71,6 +73,7 @@ void ProgressDisplay::run() {
 
 void ProgressDisplay::show() {
   if (stage_.empty()) return;
+  if (!first_.empty()) print(std::exchange(first_, {}) + "\n");
   if (terminal_) {
     draw_bar();
   } else if (stage_ != announced_) {

@@ -16,7 +16,8 @@ namespace stylet::cli {
 /// its own updates it even if a stage reports nothing for a while.
 class ProgressDisplay {
  public:
-  explicit ProgressDisplay(bool terminal);
+  /// @param first a sentence to print before the first progress; empty: none
+  ProgressDisplay(bool terminal, const std::string& first);
   ~ProgressDisplay();
   ProgressDisplay(const ProgressDisplay&) = delete;
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
@@ -36,6 +37,7 @@ class ProgressDisplay {
   const bool terminal_;
   const Clock::time_point start_ = Clock::now();
   std::mutex mutex_;  ///< guards the members below
+  std::string first_;
   std::string stage_;
   double fraction_ = 0;
   bool bar_visible_ = false;

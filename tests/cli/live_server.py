@@ -2,6 +2,7 @@
 """A running stylet serve, for tests."""
 import json
 import os
+import resource
 import subprocess
 import time
 from urllib.parse import urlsplit, urlunsplit
@@ -20,10 +21,14 @@ class Serve(InFolder):
         super().setUp()
         (self.folder / "case.toml").write_text(PHANTOM)
 
-    def start(self, *arguments):
-        """Starts a server on a free port. Returns it and its address."""
+    def start(self, *arguments, space_GB=None):
+        """Starts a server on a free port, with a limit of its address space if one is given. Returns it and its
+        address."""
+        def limit():
+            if space_GB:
+                resource.setrlimit(resource.RLIMIT_AS, (int(1e9 * space_GB),) * 2)
         server = subprocess.Popen([os.environ["STYLET"], "serve", *arguments, "--port", "0", "--json", "-"], cwd=self.folder,
-                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=limit)
         self.addCleanup(server.stdout.close)
         self.addCleanup(server.stderr.close)
         self.addCleanup(server.wait)

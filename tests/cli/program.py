@@ -78,7 +78,7 @@ class InFolder(unittest.TestCase):
         done = run(*arguments, cwd=self.folder)
         self.assertEqual(done.returncode, 2, f"{arguments}: {done.stderr}")
         self.assertEqual(done.stdout, "")
-        self.assertRegex(done.stderr, r"\A([^\n]+( \.\.\.|: \d+ %)\n|stylet: warning: [^\n]+\n)*stylet: error: [^\n]+\n\Z")
+        self.assertRegex(done.stderr, r"\A([^\n]+( \.\.\.|: \d+ %|by a rough estimate\.)\n|stylet: warning: [^\n]+\n)*stylet: error: [^\n]+\n\Z")
         for text in says:
             self.assertIn(text, done.stderr)
         self.assertEqual(files_under(self.folder), before)

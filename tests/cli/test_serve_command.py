@@ -6,6 +6,7 @@ import os
 import signal
 import stat
 import subprocess
+import time
 import unittest
 import urllib.error
 import urllib.request
@@ -29,6 +30,15 @@ class ServeCommand(Serve):
             self.until(self.recordings)
             server.send_signal(end)
             self.assertEqual(server.wait(PATIENCE_S), 0)
+
+    def test_ends_within_seconds_whatever_it_is_preparing_and_however_little_memory_it_has(self):
+        for space_GB, after_s in ((None, 2.0), (3.0, 2.0), (3.0, 12.0)):
+            server, _ = self.start("case.toml", "--models", "", "--set", "mesh.nodes=40000", space_GB=space_GB)
+            time.sleep(after_s)
+            asked = time.monotonic()
+            server.send_signal(signal.SIGTERM)
+            self.assertEqual(server.wait(PATIENCE_S), 0)
+            self.assertLess(time.monotonic() - asked, 5.0, space_GB)
 
     def test_a_killed_server_leaves_a_recording_that_repeats(self):
         server, _ = self.start("case.toml", *SMALL)

@@ -147,8 +147,9 @@ TEST(LiveImplant, a_case_without_a_plan_has_none) {
 TEST(LiveImplant, a_replay_has_the_seeds_of_each_moment_and_leaves_the_live_ones_as_they_are) {
   Implanting at;
   LiveClient& page = *at.page;
-  ASSERT_TRUE(page.until([&] { return page.displaced_nodes > 0; })) << "from now on the recording has frames";
+  ASSERT_TRUE(page.until([&] { return page.status.value("stage", "?").empty(); })) << "the displacements can be seen";
   ASSERT_TRUE(at.go_to(at.drop_depth(0, 0)));
+  ASSERT_TRUE(page.until([&] { return page.displaced_nodes > 0; })) << "from now on the recording has frames";
   ASSERT_TRUE(at.drop());
   ASSERT_TRUE(page.until([&] { return at.is_computed(); }));
   const auto first = page.implant["seeds"][0];

@@ -93,6 +93,8 @@ TEST(WarningsBeforeStart, tell_of_a_run_of_hours_with_its_steps) {
   expect_said(with("mesh.nodes", 1000000), {"minutes", "GB of memory", "a mesh of 1000000 nodes", "Fewer nodes"});
   EXPECT_NE(long_work_warning(plain(), 36000.0), "") << "a recorded motion of ten hours";
   EXPECT_DOUBLE_EQ(estimate_work(with("run.dt_ms", 0.5)).steps, 2.0 * estimate_work(plain()).steps);
+  EXPECT_GT(estimate_work(with("mesh.nodes", 10000)).memory_GB, estimate_work(with("mesh.nodes", 1000)).memory_GB);
+  EXPECT_EQ(work_text(75.0, 0.66), "about 75 seconds of processor time and 0.7 GB of memory");
 }
 
 }  // namespace

@@ -30,17 +30,21 @@ std::vector<std::string> warnings_before_start(const Scenario& scenario);
 /// @param name of the insertion @param direction of the needle from base to tip, LPS
 std::string from_the_head(const std::string& name, const Vec3& direction);
 
-/// Estimate of the time that a computation takes.
+/// Estimate of the time and the memory that a computation takes, right within a factor of three.
 struct WorkEstimate {
   double steps = 0.0;
-  double seconds = 0.0;    ///< meshing, preparation and steps on one core of a usual machine
-  double memory_GB = 0.0;  ///< of the prepared mesh
+  double preparation_s = 0.0;  ///< processor time until the first step
+  double seconds = 0.0;        ///< processor time of preparation, steps, files and pictures
+  double memory_GB = 0.0;      ///< at most at any time
 };
 
 /// Estimates the work of a scenario's insertions, or of its plan if it has no insertion. A depth that is found later
 /// counts as 100 mm, a plan in a file as 20 needles. docs/scenario.md gives the figures and where they come from.
 /// @param recorded_s [s] length of the recorded motions, which a scenario only names
 WorkEstimate estimate_work(const Scenario& scenario, double recorded_s = 0.0);
+
+/// Such as "about 2 minutes of processor time and 0.7 GB of memory".
+std::string work_text(double seconds, double memory_GB);
 
 /// A warning with the estimate and the cure if the work takes more than a quarter of an hour or much memory; empty if
 /// not.

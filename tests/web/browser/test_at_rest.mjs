@@ -8,6 +8,7 @@ import { makeFolder, SMALL, startServer } from './server.mjs';
 skipWithoutChromium();
 const FRAME = 2;  // docs/live_protocol.md
 const PAUSED = 1;
+const SHORT_DISPLACEMENT = 32;
 const SMALLEST_SCALE_MM = 0.5;
 // At rest the needle displaces the demo's tissue by a few tenths of a millimetre, which fits the smallest scale.
 const SOFT = ['--set', 'tissue.body.young_kPa=3', '--set', 'tissue.prostate.young_kPa=8'];
@@ -24,7 +25,8 @@ function watchDisplacement(page, newest) {
     const nodes = payload.readUInt32LE(160);
     if (nodes === 0) return;
     const unit = payload.readFloatLE(128);
-    const u = (i) => payload.readInt16LE(payload.length - 6 * nodes + 2 * i) * unit;
+    const short = (payload.readUInt32LE(16) & SHORT_DISPLACEMENT) !== 0;
+    const u = (i) => unit * (short ? payload.readInt8(payload.length - 3 * nodes + i) : payload.readInt16LE(payload.length - 6 * nodes + 2 * i));
     newest.largest = 0;
     for (let i = 0; i < 3 * nodes; i += 3) newest.largest = Math.max(newest.largest, Math.hypot(u(i), u(i + 1), u(i + 2)));
   }));

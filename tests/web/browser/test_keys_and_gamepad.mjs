@@ -102,6 +102,8 @@ test('the question mark lists all keys', async () => {
 });
 
 test('the tab key comes to every control, in the order in which they are read', async () => {
+  // On a slow machine there may be a notice, which goes after some seconds.
+  await page.getByLabel('Close this notice').evaluateAll((buttons) => buttons.forEach((close) => close.click()));
   await page.evaluate(() => document.activeElement?.blur());
   const wanted = await page.evaluate(() => [...document.querySelectorAll('button, select, input, summary, a[href], [tabindex="0"]')]
     .filter((e) => !e.disabled && e.checkVisibility() && !e.closest('dialog:not([open])')).length);
