@@ -94,6 +94,7 @@ Json implant_json(const RecordedImplant& implant) {
   const auto score = implant.dose_after(static_cast<std::int64_t>(implant.acts.size()));
   return {
       {"needle", plan.current < 0 ? Json(nullptr) : Json(plan.needles[static_cast<std::size_t>(plan.current)].name)},
+      {"implant", plan.implant},
       {"planned_seeds", plan.seeds.size()},
       {"acts", acts},
       {"seeds_at_end", implant.seeds_after(implant.acts.size()).size()},
@@ -109,6 +110,14 @@ void add_implant(Facts& facts, const RecordedImplant& implant) {
       fmt::format("{} seeds in {} needles; {}", plan.seeds.size(), plan.needles.size(),
                   plan.current < 0 ? "this needle is beside the plan"
                                    : "this is needle " + plan.needles[static_cast<std::size_t>(plan.current)].name));
+  if (!plan.implant.empty()) {
+    const ImplantTally& before = plan.before;
+    facts.add(
+        "implant",
+        fmt::format("begun as {}; needles before this one: skin broken {} times, organs entered {}, bone met {}, "
+                    "through the far side {}",
+                    plan.implant, before.skin_punctures, before.organ_entries, before.bone_contacts, before.exits));
+  }
   facts.add("seeds",
             fmt::format("{} of earlier needles, {} dropped, {} taken back", count_of(implant, SeedAct::Kind::earlier),
                         count_of(implant, SeedAct::Kind::dropped), count_of(implant, SeedAct::Kind::taken_back)));
@@ -151,6 +160,7 @@ Description describe(const RunRecording& run) {
       {"scenario", run.info.scenario_name},
       {"method", run.info.method},
       {"finished", finished},
+      {"ended", run.has_ended},
       {"mesh", {{"nodes", run.mesh.node_count()}, {"tets", run.mesh.tet_count()}}},
       {"steps", step_count},
       {"steps_at_rest", at_rest},
@@ -169,7 +179,9 @@ Description describe(const RunRecording& run) {
   facts.add("made by", "stylet " + run.info.version);
   facts.add("scenario", run.info.scenario_name);
   facts.add("method", run.info.method);
-  facts.add("state", finished ? "finished" : "unfinished: the insertion is still running or was interrupted");
+  facts.add("state", finished        ? "finished"
+                     : run.has_ended ? "ended: another needle was taken up, or the session was closed"
+                                     : "unfinished: the insertion is still running or was interrupted");
   facts.add("mesh", fmt::format("{} nodes, {} tetrahedra, {} regions", run.mesh.node_count(), run.mesh.tet_count(),
                                 run.mesh.regions.size()));
   facts.add("steps", fmt::format("{}{}, {:.2f} s simulated, {} frames", step_count,

@@ -1,9 +1,37 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/implant/recorded_implant.hpp"
 
+#include "stylet/sim/harms.hpp"
+
 #include <algorithm>
 
 namespace stylet {
+
+void TallyOfNeedle::add(const Event& event, ImplantTally& tally) {
+  switch (event.kind) {
+    case EventKind::skin_contact:
+      touched_ = event.region;
+      break;
+    case EventKind::puncture:
+      if (!event.region.empty() && event.region == touched_) ++tally.skin_punctures;
+      touched_.clear();
+      break;
+    case EventKind::withdrawn:
+      touched_.clear();
+      break;
+    case EventKind::region_entered:
+      if (harmed_by_needle(event.region)) ++tally.organ_entries;
+      break;
+    case EventKind::bone_contact:
+      ++tally.bone_contacts;
+      break;
+    case EventKind::exited:
+      ++tally.exits;
+      break;
+    default:
+      break;
+  }
+}
 
 const char* to_string(SeedAct::Kind kind) {
   switch (kind) {

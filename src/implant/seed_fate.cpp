@@ -72,4 +72,13 @@ void settle_seeds(std::vector<SeedHistory>& seeds, const Scenario::Seed& choice,
   }
 }
 
+SeedHistory as_dropped(SeedHistory settled) {
+  for (const SeedCause cause : {SeedCause::release, SeedCause::strand}) {
+    settled.rest_mm -= settled.by(cause);
+    settled.by(cause).setZero();
+  }
+  settled.lost = false;
+  return settled;
+}
+
 }  // namespace stylet

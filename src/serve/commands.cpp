@@ -38,6 +38,11 @@ constexpr std::array kCommands{
         "puts the needle at the start of an insertion that the scenario plans."),
     row(needle, "needle", Desk::open_case, While::live, {argument("index", kNumber)},
         "puts this needle of the plan (7) in front of the patient. Seeds that have been dropped stay."),
+    row(interrupted, "interrupted", Desk::open_case, While::live, {argument("go_on", kNumber, "", "0 | 1")},
+        "1 goes on with the implant that the status (3) calls `interrupted`: its seeds are in the tissue again, and "
+        "the "
+        "needle that it had stands in front of the patient. 0 leaves it, and the status no longer tells of it; so does "
+        "the first seed of another implant."),
     row(reset, "reset", Desk::open_case, While::live, {},
         "puts the needle back to the start of its present insertion."),
     row(open_case, "case", Desk::open_case, While::any, {argument("index", kNumber)}, "opens another case."),

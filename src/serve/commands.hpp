@@ -18,6 +18,7 @@ struct Command {
     hole,
     insertion,
     needle,
+    interrupted,
     reset,
     open_case,
     predict,

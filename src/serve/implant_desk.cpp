@@ -94,6 +94,18 @@ void ImplantDesk::set_current(std::optional<std::size_t> needle) {
   plan_changed_ = true;
 }
 
+void ImplantDesk::begin_recording(const std::string& name) {
+  if (plan_.plan.implant.empty()) plan_.plan.implant = name;
+  plan_.plan.before = state_.tally;
+  present_tally_ = {};
+}
+
+void ImplantDesk::count(const Event& event) {
+  const ImplantTally before = state_.tally;
+  present_tally_.add(event, state_.tally);
+  state_changed_ = state_changed_ || state_.tally != before;
+}
+
 void ImplantDesk::set_train(std::optional<double> from_mm) {
   state_changed_ = state_changed_ || from_mm != state_.train_from_mm;
   state_.train_from_mm = from_mm;
@@ -162,7 +174,30 @@ Result<> ImplantDesk::take_back() {
 
 void ImplantDesk::clear() {
   dropped_.clear();
+  state_.tally = {};
+  plan_.plan.implant.clear();
   seeds_have_changed();
+}
+
+Result<> ImplantDesk::go_on_with(const InterruptedImplant& implant) {
+  std::vector<std::size_t> dropped(plan().needles.size(), 0);  // seeds of each needle
+  for (const SeedHistory& seed : implant.seeds) {
+    const bool is_next = seed.needle < dropped.size() &&
+                         dropped[seed.needle] < implant_->needles[seed.needle].seeds.size() &&
+                         implant_->needles[seed.needle].seeds[dropped[seed.needle]].number == seed.number &&
+                         seed.rest_mm.allFinite() && seed.dropped_mm.allFinite() && seed.axis.allFinite();
+    if (!is_next) {
+      return input_error(implant.recording, fmt::format("its seed {} is not one of this plan", seed.number + 1),
+                         "Begin the implant anew");
+    }
+    ++dropped[seed.needle];
+  }
+  dropped_.clear();
+  for (const SeedHistory& seed : implant.seeds) dropped_.push_back(as_dropped(seed));
+  state_.tally = implant.tally;
+  plan_.plan.implant = implant.name;
+  seeds_have_changed();
+  return Ok{};
 }
 
 /// Lets the seeds of each needle settle. A needle's seeds have been dropped from its tip on, and each of them draws the

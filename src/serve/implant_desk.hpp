@@ -2,6 +2,7 @@
 #pragma once
 
 #include "implant_dose.hpp"
+#include "interrupted_implant.hpp"
 #include "needle_models.hpp"
 #include "stylet/realtime/tissue_probe.hpp"
 
@@ -40,6 +41,11 @@ class ImplantDesk {
 
   /// Sets the needle that is in front of the patient; empty: one beside the plan.
   void set_current(std::optional<std::size_t> needle);
+  /// Says that a recording of this needle begins. Its plan() then has the name of the implant, which the first
+  /// recording gives it, and what the needles before have done.
+  void begin_recording(const std::string& name);
+  /// Adds an event of this needle to LiveImplant::tally.
+  void count(const Event& event);
   /// Whether a needle is drawn back over its train of seeds instead of stopping at each.
   [[nodiscard]] bool is_preloaded() const { return plan_.technique == SeedTechnique::preloaded; }
   /// Distances [mm] of the seeds that the present needle still has behind its tip, from the tip on.
@@ -57,7 +63,11 @@ class ImplantDesk {
   Result<SeedHistory> add(const ProbedDrop& drop);
   /// Takes the last seed back, of a preloaded needle all its seeds: its train is loaded again. Error: there is none.
   Result<> take_back();
+  /// Takes all seeds back. What follows is another implant, with a tally of its own.
   void clear();
+  /// Takes an interrupted implant up: its seeds are in the tissue again where they were, to the last bits of their
+  /// place. Error: they are not seeds that the needles of this plan can have dropped; then nothing changes.
+  Result<> go_on_with(const InterruptedImplant& implant);
 
   /// Places [mm] LPS in the tissue at rest of all dropped seeds.
   [[nodiscard]] std::vector<Vec3> rest_mm() const;
@@ -93,6 +103,7 @@ class ImplantDesk {
   ShownPlan plan_;
   std::vector<SeedHistory> dropped_;  ///< as dropped, before they settle; in the order of the drops
   LiveImplant state_;
+  TallyOfNeedle present_tally_;
   bool plan_changed_ = true;
   bool state_changed_ = true;
   std::unique_ptr<NeedleModels> models_;

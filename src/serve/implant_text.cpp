@@ -132,6 +132,11 @@ std::string implant_text(const LiveImplant& implant) {
        {"planned", score_json(implant.planned)},
        {"error", error_json(implant.seeds)},
        {"lost", std::count_if(implant.seeds.begin(), implant.seeds.end(), [](const auto& s) { return s.lost; })},
+       {"tally",
+        {{"skin_punctures", implant.tally.skin_punctures},
+         {"organ_entries", implant.tally.organ_entries},
+         {"bone_contacts", implant.tally.bone_contacts},
+         {"exits", implant.tally.exits}}},
        {"why", implant.seeds.empty() ? Json::array() : causes_json(implant.seeds)}});
 }
 

@@ -7,6 +7,7 @@
 #include "io/detail/private_files.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numeric>
 
@@ -14,8 +15,9 @@ namespace stylet::serve {
 
 namespace {
 
-constexpr double kStill_N = 1e-4;         ///< a smaller change of the axial force counts as none
-constexpr double kShareForFrames = 0.05;  ///< share of this thread's time for frames of the recording
+constexpr double kStill_N = 1e-4;                        ///< a smaller change of the axial force counts as none
+constexpr std::chrono::milliseconds kLongestWrite{200};  ///< a disk that hangs does not stop the session
+constexpr double kShareForFrames = 0.05;                 ///< share of this thread's time for frames of the recording
 
 }  // namespace
 
@@ -80,6 +82,7 @@ bool LiveRecording::add(const LiveImplant& implant, bool score_is_current, doubl
   for (const RecordedScore& dose : news.doses) {
     if (recorder_) note(recorder_->add_dose(dose));
   }
+  if (recorder_ && !news.acts.empty()) recorder_->write_now(kLongestWrite);
   return !news.acts.empty();
 }
 

@@ -41,7 +41,8 @@ class LiveRecording {
   void add(const Step& step);
   void add(const Event& event);
   void add(const Frame& frame);
-  /// Records what has changed of the implant since the last call (SeedJournal::news()).
+  /// Records what has changed of the implant since the last call (SeedJournal::news()). Changes of seeds are in the
+  /// file when it returns, so that no page sees a seed that a killed server would lose.
   /// @return whether seeds were dropped, moved or taken back
   bool add(const LiveImplant& implant, bool score_is_current, double time_s);
   /// Records where the stepper holds the probe, if there is one and it has moved since the last call.

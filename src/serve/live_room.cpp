@@ -42,13 +42,14 @@ Result<Reply> LiveRoom::enter(const NeedleStart& start) {
   if (std::exchange(is_aside_, false) && start.implant) start.implant->show_again();
   implant_ = start.implant;
   std::optional<RecordedPlan> plan;
+  const std::string name = shelf_.new_name(start.name);
   if (implant_) {
     implant_->set_current(start.needle);
     implant_->set_train(std::nullopt);
+    implant_->begin_recording(name);
     plan = implant_->plan();
   }
   std::unique_ptr<Device> other = settings_.companion ? settings_.companion->device() : nullptr;
-  const std::string name = shelf_.new_name(start.name);
   told_ = {};
   told_.insertion = start.name;
   told_.hole = start.hole;
@@ -80,7 +81,9 @@ void LiveRoom::end() {
 }
 
 void LiveRoom::pump(Reply& reply) {
-  run_->pump([&](const LiveEvent& event) {
+  run_->pump([&](const Event& is) {
+    if (implant_) implant_->count(is);
+    const LiveEvent event{to_string(is.kind), is.time_s, is.depth_mm, is.force_N, is.region};
     happened_.push_back(event);
     if (happened_.size() > kMostEvents) happened_.erase(happened_.begin() + 1);  // keeps the first event, "started"
     reply.show.emplace_back(event);
@@ -189,7 +192,7 @@ Reply LiveRoom::take_back(const Request& request) {
     return Reply::refusal(request, taken.error());
   }
   set_seeds();
-  return {};
+  return follow_implant();
 }
 
 void LiveRoom::set_seeds() {

@@ -66,7 +66,7 @@ void LiveRun::record_implant(const LiveImplant& implant, bool score_is_current) 
   if (recording_.add(implant, score_is_current, time_s_)) record_next_picture();
 }
 
-void LiveRun::pump(const std::function<void(const LiveEvent&)>& tell) {
+void LiveRun::pump(const std::function<void(const Event&)>& tell) {
   while (const std::size_t count = runner_->take_steps(step_room_)) {
     for (const Step& step : std::span(step_room_).first(count)) {
       recording_.add(step);
@@ -81,8 +81,9 @@ void LiveRun::pump(const std::function<void(const LiveEvent&)>& tell) {
   while (const std::size_t count = runner_->take_events(events)) {
     for (const EventSnapshot& e : std::span(events).first(count)) {
       const std::string region = e.region < 0 ? std::string() : regions[static_cast<std::size_t>(e.region)];
-      recording_.add(Event{e.kind, e.time_s, e.depth_mm, e.force_N, region});
-      tell({to_string(e.kind), e.time_s, e.depth_mm, e.force_N, region});
+      const Event event{e.kind, e.time_s, e.depth_mm, e.force_N, region};
+      recording_.add(event);
+      tell(event);
       record_next_picture();
     }
   }

@@ -39,7 +39,7 @@ class LiveRun {
   void set_field(std::shared_ptr<const DisplayField> field);
   /// Fetches the new steps and events, records them and passes the events to `tell`. Must be called before the runner's
   /// buffer of steps is full; otherwise steps are lost.
-  void pump(const std::function<void(const LiveEvent&)>& tell);
+  void pump(const std::function<void(const Event&)>& tell);
   /// The newest picture; null if it would show nothing new, but for a few each second as a sign of life (FrameNews).
   /// The displacement may follow later, in another picture of the same moment, and is left out where nothing has moved.
   /// @param whole_curve the picture holds all samples of the curve instead of the new ones, and the newest displacement

@@ -77,6 +77,19 @@ Parcel parcel_of(const Notice& notice) {
   return json_parcel(wire::Kind::notice, Json{{"text", notice.text}, {"cure", notice.cure}});
 }
 
+namespace {
+
+Json interrupted_json(const std::optional<SessionStatus::Interrupted>& implant) {
+  if (!implant) return nullptr;
+  return {{"recording", implant->recording},
+          {"recorded_s", implant->recorded_s},
+          {"seeds", implant->seeds},
+          {"planned_seeds", implant->planned_seeds},
+          {"needle", implant->needle}};
+}
+
+}  // namespace
+
 Parcel parcel_of(const SessionStatus& s, const OwnStatus& own) {
   return json_parcel(wire::Kind::status, Json{{"state", kStates.at(static_cast<std::size_t>(s.state))},
                                               {"stage", s.stage},
@@ -115,6 +128,7 @@ Parcel parcel_of(const SessionStatus& s, const OwnStatus& own) {
                                                 {"duration_s", s.replay.duration_s},
                                                 {"playing", s.replay.rate > 0.0},
                                                 {"rate", s.replay.rate}}},
+                                              {"interrupted", interrupted_json(s.interrupted)},
                                               {"loop",
                                                {{"steps", s.loop.steps},
                                                 {"missed", s.loop.missed},

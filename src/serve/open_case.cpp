@@ -55,6 +55,8 @@ Reply OpenCase::ask(const Request& request) {
       const std::size_t count = implant_ ? implant_->plan().needles.size() : 0;
       return number < count ? choose_needle(number) : missing(request, "needle of the plan", count);
     }
+    case interrupted:
+      return answer_offer(request);
     case reset:
       return put(insertion_);
     case predict:
@@ -97,7 +99,28 @@ Reply OpenCase::choose_needle(std::size_t which) {
   const auto load = [made = LoadedCase{ready->model, open_.notes}](const Progress&) -> Result<LoadedCase> {
     return made;
   };
-  return {ToOpen{number_, load, true, true, ready->field}};
+  return {ToOpen{.number = number_, .load = load, .is_other_needle = true, .is_compiled = true, .field = ready->field}};
+}
+
+/// The implant that can be gone on with; null: there is none, or seeds of another one have been dropped.
+const InterruptedImplant* OpenCase::offer() const {
+  return search_ && implant_ && implant_->state().seeds.empty() ? search_->found() : nullptr;
+}
+
+/// Takes the interrupted implant up, with the needle that it had in front of the patient; or leaves it.
+Reply OpenCase::answer_offer(const Request& request) {
+  const InterruptedImplant* implant = offer();
+  if (!implant) {
+    return Reply::refusal(
+        request, input_error("the implant", "there is none to go on with", "Carry out the plan from its first needle"));
+  }
+  if (request.command.number <= 0.0) {
+    leaving_.add(std::exchange(search_, nullptr));
+    return {};
+  }
+  Reply reply = choose_needle(implant->needle);
+  std::get<ToOpen>(reply.next).goes_on = true;
+  return reply;
 }
 
 ToOpen OpenCase::other_needle(const InsertionPlan& plan, const std::string& where) const {
@@ -120,6 +143,10 @@ Result<Reply> OpenCase::open(const ToOpen& what, const Progress& progress) {
     if (!desk) return desk.error();
     implant = *std::move(desk);
   }
+  if (what.goes_on) {
+    if (auto done = implant_->go_on_with(*offer()); !done) return done.error();
+    leaving_.add(std::exchange(search_, nullptr));
+  }
   Reply reply;
   leaving_.add(std::exchange(field_maker_, nullptr));
   open_ = {.model = loaded->model, .notes = std::move(loaded->notes), .field = what.field, .points = {}, .way = 0};
@@ -138,9 +165,11 @@ Result<Reply> OpenCase::open(const ToOpen& what, const Progress& progress) {
 void OpenCase::begin_case(std::shared_ptr<ImplantDesk> implant, Reply& reply) {
   if (implant_ && !implant) reply.show.emplace_back(ShownPlan{});
   leaving_.add(std::exchange(implant_, std::move(implant)));
+  leaving_.add(std::exchange(search_, nullptr));
   scenario_ = open_.model->scenario();
   insertions_ = open_.model->insertions();
   if (!implant_) return;
+  search_ = std::make_shared<ImplantSearch>(Shelf(settings_.recordings, settings_.archive), implant_->plan());
   scenario_.insertions.clear();
   insertions_.clear();
   for (std::size_t k = 0; k < implant_->insertions().size(); ++k) {
@@ -250,7 +279,12 @@ ImageSubject OpenCase::patient() const {
 }
 
 void OpenCase::describe(SessionStatus& status) const {
+  status.interrupted.reset();
   if (!is_open()) return;
+  if (const InterruptedImplant* implant = offer()) {
+    status.interrupted = {implant->recording, implant->recorded_s, implant->seeds.size(), implant_->plan().seeds.size(),
+                          implant_->plan().needles[implant->needle].name};
+  }
   status.stage = field_maker_ ? kFieldStage : open_.field ? "" : kNoField + no_field_;
   status.fraction = field_maker_ ? field_maker_->fraction() : -1.0;
 }

@@ -4,6 +4,7 @@
 #include "field_maker.hpp"
 #include "image_desk.hpp"
 #include "implant_desk.hpp"
+#include "interrupted_implant.hpp"
 #include "leaving.hpp"
 #include "map_maker.hpp"
 #include "room.hpp"
@@ -36,13 +37,15 @@ class OpenCase {
   [[nodiscard]] CaseList list() const;
   /// The patient for pictures; there must be an open model.
   [[nodiscard]] ImageSubject patient() const;
-  /// Which part of the picture is missing.
+  /// Which part of the picture is missing, and which implant can be gone on with.
   void describe(SessionStatus& status) const;
 
  private:
   Reply choose_hole(const Request& request);
   Reply choose_plan(const Request& request, const InsertionPlan& plan, const std::string& where);
   Reply choose_needle(std::size_t which);
+  Reply answer_offer(const Request& request);
+  [[nodiscard]] const InterruptedImplant* offer() const;
   [[nodiscard]] ToOpen other_needle(const InsertionPlan& plan, const std::string& where) const;
   void begin_case(std::shared_ptr<ImplantDesk> implant, Reply& reply);
   void begin_map();
@@ -58,6 +61,7 @@ class OpenCase {
   std::vector<PlannedInsertion> insertions_;
   std::size_t insertion_ = 0;                ///< of the open model
   std::shared_ptr<ImplantDesk> implant_;     ///< null: the case has no plan of seeds
+  std::shared_ptr<ImplantSearch> search_;    ///< for an implant to go on with; null: none is wanted
   std::shared_ptr<FieldMaker> field_maker_;  ///< until the field of the open model is complete
   std::string no_field_;                     ///< why the open model has none
   std::shared_ptr<MapMaker> map_maker_;

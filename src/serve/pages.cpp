@@ -56,10 +56,27 @@ HttpResponse Pages::refusal(const HttpRequest& request, http::status status, con
   return response(request, status, "text/plain; charset=utf-8", printable_lines(why) + "\n");
 }
 
-/// The list holds names only, because opening each recording would take seconds.
 HttpResponse Pages::recordings(const HttpRequest& request) const {
   record::Json list = record::Json::array();
-  for (const std::string& name : shelf_.names()) list.push_back({{"name", name}});
+  for (const CatalogueEntry& entry : catalogue_->list()) {
+    record::Json row = {{"name", entry.name}};
+    if (entry.problem.empty()) {
+      row.update({{"case", entry.of_case},
+                  {"needle", record::or_null(entry.needle)},
+                  {"seconds", entry.duration_s},
+                  {"ended", entry.has_ended},
+                  {"peak_force_N", record::or_null(entry.most_N)},
+                  {"seeds", nullptr}});
+      if (entry.has_plan) {
+        row["seeds"] = {{"dropped", entry.seeds},
+                        {"planned", entry.planned_seeds},
+                        {"d90_percent", record::or_null(entry.d90_percent)}};
+      }
+    } else {
+      row["problem"] = entry.problem;
+    }
+    list.push_back(std::move(row));
+  }
   return response(request, http::status::ok, "application/json", record::compact(list));
 }
 

@@ -2,8 +2,11 @@
 #pragma once
 
 #include "access.hpp"
+#include "catalogue.hpp"
 #include "http.hpp"
 #include "shelf.hpp"
+
+#include <memory>
 
 namespace stylet::serve {
 
@@ -13,7 +16,8 @@ std::string_view target(const HttpRequest& request);
 /// Answers HTTP requests: the page and the recordings. The live connection is a WebSocket and handled elsewhere.
 class Pages {
  public:
-  Pages(const Access& access, Shelf shelf) : access_(access), shelf_(std::move(shelf)) {}
+  Pages(const Access& access, Shelf shelf)
+      : access_(access), shelf_(std::move(shelf)), catalogue_(std::make_unique<Catalogue>(shelf_)) {}
 
   [[nodiscard]] HttpResponse answer(const HttpRequest& request) const;
   [[nodiscard]] Access::Verdict verdict(const HttpRequest& request) const;
@@ -26,6 +30,7 @@ class Pages {
 
   const Access& access_;
   Shelf shelf_;
+  std::unique_ptr<Catalogue> catalogue_;
 };
 
 }  // namespace stylet::serve

@@ -15,12 +15,18 @@ ReplayedSeeds::ReplayedSeeds(const Replay& replay) : replay_(replay) {
 std::optional<LiveImplant> ReplayedSeeds::news() {
   const RecordedImplant& implant = recorded();
   const std::size_t acts = implant.acts_until(replay_.time_s());
-  if (acts_ == acts) return std::nullopt;
+  ImplantTally tally = implant.plan.before;
+  TallyOfNeedle of_needle;
+  for (const Event& event : replay_.recording().events)
+    if (event.time_s <= replay_.time_s()) of_needle.add(event, tally);
+  if (acts_ == acts && tally == tally_) return std::nullopt;
   acts_ = acts;
+  tally_ = tally;
   there_ = implant.acts_of_seeds(acts);
   LiveImplant now;
   now.seeds = implant.seeds_after(acts);
   now.planned_seeds = implant.plan.seeds.size();
+  now.tally = tally;
   if (const auto dose = implant.dose_after(static_cast<std::int64_t>(acts))) now.now = ImplantScore{*dose};
   if (const auto dose = implant.dose_after(RecordedScore::kOfPlan)) now.planned = ImplantScore{*dose};
   return now;

@@ -21,7 +21,7 @@ class ReplayedSeeds {
 
   /// The recorded plan. No needle is ready, since none can be chosen.
   [[nodiscard]] ShownPlan plan() const { return {recorded().plan}; }
-  /// The acts that had been carried out until the present moment; empty if it is the same as at the last call.
+  /// What had been carried out until the present moment; empty if it is the same as at the last call.
   [[nodiscard]] std::optional<LiveImplant> news();
   /// Where the seeds of the last news() are now.
   [[nodiscard]] LiveSeeds places() const;
@@ -32,6 +32,7 @@ class ReplayedSeeds {
   const Replay& replay_;
   std::vector<MaterialPoint> at_;    ///< of the seed of each act, at rest; outside of the mesh without an element
   std::optional<std::size_t> acts_;  ///< number of acts at the last news()
+  ImplantTally tally_;               ///< at the last news()
   std::vector<std::size_t> there_;   ///< the acts that say where the seeds that are there now rest
 };
 

@@ -34,6 +34,7 @@ struct ToOpen {
   std::function<Result<LoadedCase>(const Progress&)> load;
   bool is_other_needle = false;                 ///< of the open case
   bool is_compiled = false;                     ///< loading takes no time
+  bool goes_on = false;                         ///< the interrupted implant of the open case is to be taken up
   std::shared_ptr<const DisplayField> field{};  ///< null: it is to be prepared
 };
 

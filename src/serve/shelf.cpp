@@ -7,13 +7,16 @@
 #include <algorithm>
 #include <ctime>
 #include <functional>
-#include <set>
+#include <map>
 #include <string_view>
+#include <tuple>
 
 namespace stylet::serve {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr std::string_view kMoment = "0000-00-00-000000-";  ///< beginning of an own name, with digits for zeros
 
 /// Keeps the letters, digits and dots of a name and replaces each run of other characters by a dash.
 std::string tame(const std::string& name) {
@@ -36,9 +39,8 @@ std::string Shelf::new_name(const std::string& of) const {
 }
 
 bool Shelf::is_own_name(const std::string& name) {
-  constexpr std::string_view pattern = "0000-00-00-000000-";
-  if (name.size() < pattern.size()) return false;
-  return std::equal(pattern.begin(), pattern.end(), name.begin(),
+  if (name.size() < kMoment.size()) return false;
+  return std::equal(kMoment.begin(), kMoment.end(), name.begin(),
                     [](char p, char c) { return p == '0' ? c >= '0' && c <= '9' : c == p; });
 }
 
@@ -49,15 +51,22 @@ fs::path Shelf::folder(const std::string& name) const {
 }
 
 std::vector<std::string> Shelf::names() const {
-  std::set<std::string, std::greater<>> names;
+  std::map<std::string, fs::file_time_type> begun;  // when run.h5 came into its folder
   for (const fs::path& folder : {folder_, archive_}) {
     std::error_code code;
     for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
       std::error_code none;
-      if (fs::is_regular_file(entry->path() / "run.h5", none)) names.insert(entry->path().filename().string());
+      if (fs::is_regular_file(entry->path() / "run.h5", none))
+        begun.emplace(entry->path().filename().string(), fs::last_write_time(entry->path(), none));
     }
   }
-  return {names.begin(), names.end()};
+  std::vector<std::string> names;
+  for (const auto& [name, time] : begun) names.push_back(name);
+  // Names have seconds, in which a needle may follow another one.
+  std::ranges::sort(names, std::greater<>(), [&](const std::string& name) {
+    return std::tuple(is_own_name(name) ? name.substr(0, kMoment.size()) : name, begun.at(name), name);
+  });
+  return names;
 }
 
 Result<RunRecording> Shelf::read(const std::string& name) const {
@@ -67,6 +76,12 @@ Result<RunRecording> Shelf::read(const std::string& name) const {
                        fmt::format("there is no such recording in {}", folder_.string()),
                        "Choose one from the list of recordings");
   return read_recording(folder(name) / "run.h5");
+}
+
+std::vector<Result<RecordingHead>> Shelf::heads(std::span<const std::string> names) const {
+  std::vector<fs::path> files;
+  for (const std::string& name : names) files.push_back(folder(name) / "run.h5");
+  return read_recording_heads(files);
 }
 
 }  // namespace stylet::serve

@@ -5,6 +5,7 @@
 #include "stylet/io/recording_io.hpp"
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,8 @@ class Shelf {
   [[nodiscard]] std::vector<std::string> names() const;
   /// Reads a recording. Errors: no recording of this name (a path is not a name), and the errors of read_recording().
   [[nodiscard]] Result<RunRecording> read(const std::string& name) const;
+  /// The heads of recordings whose names are known.
+  [[nodiscard]] std::vector<Result<RecordingHead>> heads(std::span<const std::string> names) const;
 
  private:
   std::filesystem::path folder_;

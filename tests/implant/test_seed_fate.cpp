@@ -53,6 +53,33 @@ TEST(SettleSeeds, of_a_strand_keeps_the_distances_and_the_causes_add_up) {
   }
 }
 
+TEST(SettleSeeds, can_be_undone_and_done_again_with_the_same_result) {
+  std::mt19937 random(4);
+  const Scenario::Seed choice{
+      .stranded = true, .release_mm = -1.0, .release_sd_mm = 0.5, .loss_percent = 40.0, .random = 7};
+  const auto dropped = train(random, 1.5);
+  auto settled = dropped;
+  settle_seeds(settled, choice, 3);
+  auto again = settled;
+  for (SeedHistory& seed : again) seed = as_dropped(seed);
+  for (std::size_t k = 0; k < dropped.size(); ++k) {
+    EXPECT_LT((again[k].rest_mm - dropped[k].rest_mm).norm(), 1e-12);
+    EXPECT_LT((again[k].by(SeedCause::bend) - dropped[k].by(SeedCause::bend)).norm(), 1e-12);
+    EXPECT_FALSE(again[k].lost);
+  }
+  settle_seeds(again, choice, 3);
+  bool is_any_lost = false;
+  for (std::size_t k = 0; k < dropped.size(); ++k) {
+    EXPECT_GT((settled[k].rest_mm - dropped[k].rest_mm).norm(), 1e-3);
+    EXPECT_LT((again[k].rest_mm - settled[k].rest_mm).norm(), 1e-12);
+    for (const SeedCauseWords& words : kSeedCauses)
+      EXPECT_LT((again[k].by(words.cause) - settled[k].by(words.cause)).norm(), 1e-12) << words.name;
+    EXPECT_EQ(again[k].lost, settled[k].lost);
+    is_any_lost = is_any_lost || settled[k].lost;
+  }
+  EXPECT_TRUE(is_any_lost);
+}
+
 TEST(SettleSeeds, jumps_and_loses_as_many_as_asked_and_the_same_ones_again) {
   std::mt19937 random(3);
   double sum = 0.0, squares = 0.0;

@@ -47,7 +47,7 @@ struct Paused {
   }
 
   std::shared_ptr<const LiveFrame> next(bool whole_curve = false) const {
-    run->pump([](const LiveEvent&) {});
+    run->pump([](const Event&) {});
     return run->picture(whole_curve);
   }
   /// The first picture that satisfies `good`.

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The rooms of a session, each without the others, and the session without a connection.
+#include "catalogue.hpp"
+#include "implant_desk.hpp"
 #include "rectum_case.hpp"
 #include "session.hpp"
 #include "small_implant.hpp"
 
 #include <chrono>
+#include <ctime>
+#include <fstream>
 #include <mutex>
 #include <thread>
 
@@ -152,13 +156,26 @@ struct InSession {
       : session(room_settings(folder, std::move(cases)), kept) {
     session.start();
     EXPECT_TRUE(kept.until([&] { return kept.status.state == SessionStatus::State::ready; }));
-    EXPECT_TRUE(kept.until([&] { return kept.status.recording.seconds > 0.02; }));
+    // Recordings are written to the disk five times a second.
+    EXPECT_TRUE(kept.until([&] { return kept.status.recording.seconds > 0.5; }));
   }
   /// Asks, and waits for a status that satisfies a condition.
   bool ask(const Request& request, const std::function<bool(const SessionStatus&)>& good) {
     return session.ask(request) && kept.until([&] { return good(kept.status); });
   }
 };
+
+/// A drop that ImplantDesk::add() accepts.
+ProbedDrop some_drop() {
+  ProbedDrop made;
+  made.tip_in_tissue = made.found = true;
+  made.axis = {0.0, 0.0, 1.0};
+  return made;
+}
+
+std::optional<InterruptedImplant> interrupted_in(const LiveNeedle& needle) {
+  return find_interrupted(Shelf(needle.folder.path), needle.start.implant->plan(), false);
+}
 
 }  // namespace
 
@@ -250,6 +267,162 @@ TEST(LiveRoom, drops_seeds_of_a_plan_only_and_keeps_them_during_a_replay) {
   EXPECT_TRUE(with.live.follow_implant().show.empty()) << "the recorded implant is shown";
   (void)with.live.come_back();
   EXPECT_EQ(shown_by<ShownPlan>(with.live.follow_implant()).size(), 1u);
+}
+
+TEST(OpenCase, offers_an_interrupted_implant_and_takes_it_up_to_the_last_bits) {
+  const auto source = implant_case([](Scenario& scenario) {
+    scenario.seed = {.stranded = true, .release_mm = 0.5, .release_sd_mm = 2.0, .loss_percent = 30.0, .random = 7};
+  });
+  LiveNeedle first(source);
+  EXPECT_SAYS(refused_by(first.room.ask(ask_for(Do::interrupted, 1.0))), "there is none to go on with");
+  ImplantDesk& desk = *first.start.implant;
+  const auto drop = [&](double along_mm) {
+    ProbedDrop made;
+    made.tip_in_tissue = made.found = true;
+    made.time_s = along_mm;
+    made.place = {0.3, 5.0, along_mm};
+    made.rest = {0.1, 5.2, along_mm - 2.0};
+    made.straight = {0.0, 5.0, along_mm};
+    made.lasting = {0.0, 0.0, 0.3};
+    made.axis = {0.0, 0.0, 1.0};
+    EXPECT_TRUE(desk.add(made));
+    (void)first.live.follow_implant();
+  };
+  drop(42.0);
+  drop(31.0);
+  desk.count({EventKind::bone_contact, 1.0, 1.0, 1.0, "bone"});
+  desk.set_current(1);
+  drop(36.0);
+  desk.set_current(0);
+  drop(24.0);
+  ASSERT_TRUE(desk.take_back());
+  (void)first.live.follow_implant();
+  const LiveImplant before = desk.state();
+  ASSERT_EQ(before.seeds.size(), 3u);
+
+  // Nothing was closed; another server, or another day, finds what is on the disk.
+  OpenCase other(first.settings);
+  const Reply wish = other.ask(ask_for(Do::open_case));
+  ASSERT_TRUE(other.open(std::get<ToOpen>(wish.next), {}));
+  SessionStatus status;
+  first.until([&] {
+    other.describe(status);
+    return status.interrupted.has_value();
+  });
+  EXPECT_EQ(status.interrupted->recording, first.status().recording.name);
+  EXPECT_EQ(status.interrupted->seeds, 3u);
+  EXPECT_EQ(status.interrupted->planned_seeds, 5u);
+  EXPECT_EQ(status.interrupted->needle, "left");
+  EXPECT_NEAR(static_cast<double>(status.interrupted->recorded_s), static_cast<double>(std::time(nullptr)), 60.0);
+  const Reply up = other.ask(ask_for(Do::interrupted, 1.0));
+  const auto opened = other.open(std::get<ToOpen>(up.next), {});
+  ASSERT_TRUE(opened) << opened.error().message();
+  const NeedleStart start = *std::get<ToLive>(opened->next).start;
+  EXPECT_EQ(start.needle, 0u);
+  const LiveImplant& after = start.implant->state();
+  ASSERT_EQ(after.seeds.size(), before.seeds.size());
+  for (std::size_t k = 0; k < before.seeds.size(); ++k) {
+    const SeedHistory &was = before.seeds[k], &is = after.seeds[k];
+    EXPECT_TRUE(was.is_same_drop(is));
+    EXPECT_EQ(was.lost, is.lost);
+    EXPECT_LT((was.rest_mm - is.rest_mm).norm(), 1e-12);
+    for (const SeedCauseWords& words : kSeedCauses)
+      EXPECT_LT((was.by(words.cause) - is.by(words.cause)).norm(), 1e-12) << words.name;
+  }
+  other.describe(status);
+  EXPECT_FALSE(status.interrupted) << "it was taken up";
+  EXPECT_EQ(start.implant->plan().implant, desk.plan().implant);
+}
+
+TEST(OpenCase, leaves_an_interrupted_implant_that_nobody_wants) {
+  LiveNeedle first(implant_case());
+  EXPECT_FALSE(interrupted_in(first)) << "nothing was done to the seeds";
+  ASSERT_TRUE(first.start.implant->add(some_drop()));
+  (void)first.live.follow_implant();
+  ASSERT_TRUE(interrupted_in(first));
+  OpenCase other(first.settings);
+  const Reply wish = other.ask(ask_for(Do::open_case));
+  ASSERT_TRUE(other.open(std::get<ToOpen>(wish.next), {}));
+  SessionStatus status;
+  first.until([&] {
+    other.describe(status);
+    return status.interrupted.has_value();
+  });
+  EXPECT_EQ(refused_by(other.ask(ask_for(Do::interrupted, 0.0))), "");
+  other.describe(status);
+  EXPECT_FALSE(status.interrupted);
+  (void)first.live.ask(ask_for(Do::clear));
+  EXPECT_FALSE(interrupted_in(first)) << "its seeds were all taken back";
+}
+
+TEST(FindInterrupted, takes_the_last_needle_also_the_next_day_and_among_other_recordings) {
+  LiveNeedle needle(implant_case());
+  needle.start.implant->count({EventKind::region_entered, 1.0, 60.0, 1.0, "rectum"});
+  const auto next = [&](std::size_t which) {
+    needle.start.needle = which;
+    needle.start.name = needle.start.implant->plan().needles[which].name;
+    EXPECT_TRUE(needle.live.enter(needle.start));
+    EXPECT_TRUE(needle.start.implant->add(some_drop()));
+    (void)needle.live.follow_implant();
+  };
+  next(1);
+  next(0);  // mostly in the same second, in which the names are not in the order of time
+  ASSERT_TRUE(interrupted_in(needle));
+  EXPECT_EQ(interrupted_in(needle)->needle, 0u);
+  next(1);
+  const std::string last = needle.status().recording.name;
+  const Shelf shelf(needle.folder.path);
+  for (const std::string& name : shelf.names())
+    std::filesystem::rename(shelf.folder(name), needle.folder.path / ("2026-01-01" + name.substr(10)));
+  const auto implant = std::exchange(needle.start.implant, nullptr);
+  ASSERT_TRUE(needle.live.enter(needle.start)) << "a newer recording, which has no plan";
+  needle.start.implant = implant;
+  const auto found = interrupted_in(needle);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->recording, "2026-01-01" + last.substr(10));
+  EXPECT_EQ(found->needle, 1u);
+  EXPECT_EQ(found->seeds.size(), 3u);
+  EXPECT_EQ(found->tally, ImplantTally{.organ_entries = 1});
+}
+
+TEST(LiveRoom, says_in_each_recording_what_the_needles_before_have_done) {
+  LiveNeedle needle(implant_case());
+  const std::string first = needle.status().recording.name;
+  needle.start.implant->count({EventKind::region_entered, 1.0, 60.0, 1.0, "rectum"});
+  ASSERT_TRUE(needle.live.enter(needle.start));
+  const std::string second = needle.status().recording.name;
+  needle.live.end();
+  const Shelf shelf(needle.folder.path);
+  const RecordedPlan one = shelf.read(first)->implant->plan, two = shelf.read(second)->implant->plan;
+  EXPECT_EQ(one.implant, first);
+  EXPECT_EQ(one.before, ImplantTally{});
+  EXPECT_EQ(two.implant, first);
+  EXPECT_EQ(two.before, ImplantTally{.organ_entries = 1});
+}
+
+TEST(Catalogue, tells_of_each_recording_and_reads_only_what_has_changed) {
+  LiveNeedle needle(implant_case());
+  const std::string first = needle.status().recording.name;
+  ASSERT_TRUE(needle.live.enter(needle.start));
+  Catalogue catalogue{Shelf(needle.folder.path)};
+  const auto list = catalogue.list();
+  ASSERT_EQ(list.size(), 2u);
+  EXPECT_EQ(list[1].name, first);
+  EXPECT_EQ(list[1].problem, "");
+  EXPECT_TRUE(list[1].has_ended) << "by the next needle";
+  EXPECT_FALSE(list[0].has_ended);
+  EXPECT_EQ(list[1].needle, "left");
+  EXPECT_GT(list[1].duration_s, 0.0);
+  EXPECT_EQ(list[1].planned_seeds, 5u);
+  // A file that nobody can read any more is not read again while it looks the same.
+  const auto file = needle.folder.path / first / "run.h5";
+  const auto written = std::filesystem::last_write_time(file);
+  const auto bytes = std::filesystem::file_size(file);
+  std::ofstream(file) << std::string(bytes, 'x');
+  std::filesystem::last_write_time(file, written);
+  EXPECT_EQ(catalogue.list()[1].problem, "");
+  std::filesystem::last_write_time(file, written + std::chrono::seconds(1));
+  EXPECT_NE(catalogue.list()[1].problem, "");
 }
 
 TEST(ReplayRoom, shows_a_recording_and_names_where_a_page_wants_to_go) {

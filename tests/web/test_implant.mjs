@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { depthToGo, isFinished, meanMotion, nextNeedle, nextSeed, placesNow, replayWords, whatToDo } from 'live/src/implant/implant';
+import { depthToGo, isFinished, meanMotion, nextNeedle, nextSeed, placesNow, replayWords, tallyRows, whatToDo } from 'live/src/implant/implant';
 import { isodoseRings } from 'live/src/implant/isodose';
+import { resultWords } from 'live/src/controls/dialogs';
+import { offerWords } from 'live/src/implant/interrupted';
 import { goalWords } from 'live/src/implant/end_card';
 import { decode, Kind, WireError } from 'live/src/wire';
 
@@ -54,6 +56,31 @@ test('a lost seed is nowhere', () => {
 test('a recording says what its needle had dropped', () => {
   assert.match(replayWords(plan(0), implant(0, 1)), /^Recording\. Needle A, 1 of 2 seeds dropped\./);
   assert.match(replayWords(plan(-1), null), /beside the plan/);
+});
+
+test('an interrupted implant is offered in plain words', () => {
+  const at = (...date) => new Date(...date).getTime() / 1000;
+  const offer = { recording: 'r', recorded_s: at(2026, 10, 29, 17, 5), seeds: 13, planned_seeds: 84, needle: 'B4' };
+  const { question, meaning } = offerWords(offer, new Date(2026, 11, 1));
+  assert.equal(question, 'Go on with the implant of 13 of 84 seeds from 29 November, 17:05?');
+  assert.match(meaning, /needle B4 stands in front of the skin/);
+  assert.match(offerWords(offer, new Date(2027, 0, 1)).question, /from 29 November 2026, 17:05\?/);
+});
+
+test('what the needles have done is counted in words', () => {
+  const rows = (tally) => tallyRows({ skin_punctures: 0, organ_entries: 0, bone_contacts: 0, exits: 0, ...tally });
+  assert.deepEqual(rows({ skin_punctures: 9 })[0], { what: 'Skin broken', often: '9 times', harm: false });
+  assert.deepEqual(rows({ bone_contacts: 1 })[2], { what: 'Bone met', often: 'once', harm: true });
+  assert.equal(rows({}).length, 3);
+  assert.equal(rows({ exits: 2 })[3].often, 'twice');
+});
+
+test('a recording has its result, and only one that was cut off is interrupted', () => {
+  const seeds = { dropped: 13, planned: 84, d90_percent: 21.34 };
+  assert.equal(resultWords({ name: 'a', seeds, ended: true }), '13 of 84 seeds, D90 21.3 %');
+  assert.equal(resultWords({ name: 'a', seeds: { ...seeds, d90_percent: null }, ended: false }), '13 of 84 seeds, interrupted');
+  assert.equal(resultWords({ name: 'a', seeds: null, peak_force_N: 7.25, ended: false }, 'a'), 'at most 7.3 N, being recorded');
+  assert.equal(resultWords({ name: 'a', problem: 'damaged' }), 'It cannot be read: damaged');
 });
 
 test('the next needle is the next one that has seeds', () => {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "stylet/implant/seed_history.hpp"
+#include "stylet/sim/recording.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -9,6 +10,26 @@
 #include <vector>
 
 namespace stylet {
+
+/// How often the needles of an implant have broken the skin, and how often they have harmed the patient.
+struct ImplantTally {
+  int skin_punctures = 0;
+  int organ_entries = 0;  ///< of organs that a needle harms (harmed_by_needle())
+  int bone_contacts = 0;
+  int exits = 0;  ///< through the far side of the patient
+
+  bool operator==(const ImplantTally&) const = default;
+};
+
+/// Counts the events of one needle.
+class TallyOfNeedle {
+ public:
+  /// Adds an event to a tally. The events have to come in their order.
+  void add(const Event& event, ImplantTally& tally);
+
+ private:
+  std::string touched_;  ///< region whose surface the tip has touched from outside; empty once it has broken
+};
 
 /// The plan of seeds that a recorded insertion belongs to. All places are in LPS [mm].
 struct RecordedPlan {
@@ -33,6 +54,8 @@ struct RecordedPlan {
   double seed_diameter_mm = 0.0;
   double prescription_Gy = 0.0;  ///< 0: none is known
   std::string source;            ///< name of the source model
+  std::string implant;           ///< name of the implant: that of the recording of its first needle
+  ImplantTally before;           ///< of the needles before that of this recording
 };
 
 /// One change of the seeds in the tissue, at a moment of a recording.

@@ -13,5 +13,7 @@ namespace stylet {
 /// @param seeds of one needle, from its tip on
 /// @param needle number of the needle, which with SeedChoice::random starts the random numbers
 void settle_seeds(std::vector<SeedHistory>& seeds, const Scenario::Seed& choice, std::size_t needle);
+/// A settled seed as it was dropped: the inverse of settle_seeds(), to the last bits of its place.
+SeedHistory as_dropped(SeedHistory settled);
 
 }  // namespace stylet

@@ -7,6 +7,7 @@
 #include "stylet/sim/probe_move.hpp"
 #include "stylet/sim/recording.hpp"
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -15,8 +16,8 @@
 namespace stylet {
 
 /// Writes run.h5 (docs/results) during a session of unknown length. A thread of its own writes the added data to the
-/// disk five times a second, so a process that is killed loses less than a second. Calls never wait for the disk;
-/// each returns the first error of writing, if there was one.
+/// disk five times a second, so a process that is killed loses less than a second. Only write_now() waits for the
+/// disk; each add function returns the first error of writing, if there was one.
 class RunRecorder {
  public:
   /// @param file is replaced if it exists
@@ -32,6 +33,8 @@ class RunRecorder {
   // Without a plan, these two are not recorded.
   Result<> add_act(const SeedAct& act);
   Result<> add_dose(const RecordedScore& dose);
+  /// Waits until everything added so far is in the file, where a process that is killed leaves it; at most so long.
+  void write_now(std::chrono::milliseconds most);
 
  private:
   struct Parts;

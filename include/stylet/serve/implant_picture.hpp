@@ -37,6 +37,7 @@ struct LiveImplant {
   /// A train is being left: depth of the base at which it was begun. Empty: none is.
   std::optional<double> train_from_mm{};
   bool is_computing = false;  ///< `now` belongs to fewer or more seeds than have been dropped
+  ImplantTally tally{};       ///< of all needles so far
 };
 
 /// Where the dropped seeds are at this moment.

@@ -105,6 +105,15 @@ struct SessionStatus {
     double duration_s = 0.0;
     double rate = 0.0;  ///< playing speed, 1 is real time; 0: stopped
   } replay;
+  /// An implant of the open case that an earlier session, or this one, has begun and not finished.
+  struct Interrupted {
+    std::string recording;        ///< of its last needle
+    std::int64_t recorded_s = 0;  ///< [s] since 1970, when this was last written
+    std::size_t seeds = 0;        ///< in the tissue
+    std::size_t planned_seeds = 0;
+    std::string needle;  ///< that was in front of the patient
+  };
+  std::optional<Interrupted> interrupted;  ///< empty: there is none, or another one has been begun
   struct Loop {
     std::int64_t steps = 0;
     std::int64_t missed = 0;

@@ -81,6 +81,7 @@ TaskTable all_tasks() {
   table.add(kToml,
             [](const fs::path& source, const std::string& text) { return parse_toml_text(text, source.string()); });
   table.add(results::kRunFile, results::parse_run_file);
+  table.add(results::kRunHeads, results::parse_run_heads);
   table.add(results::kImplantFile, results::parse_implant_file);
   table.add(results::kIsImplantFile, results::is_implant_file);
   return table;

@@ -103,6 +103,13 @@ void columns(auto& visit, record::Of<RecordedPlan> auto& p) {
   visit(Field("seed_diameter_mm", "mm", "diameter of a seed"), p.seed_diameter_mm);
   visit(Field("prescription_Gy", "Gy", "prescribed dose; 0: none"), p.prescription_Gy);
   visit(Field("source", "", "name of the source model"), p.source);
+  visit(Field("implant", "", "name of the implant: that of the recording of its first needle").since(7), p.implant);
+  visit(Field("skin_punctures_before", "", "how often the needles before this one have broken the skin").since(7),
+        p.before.skin_punctures);
+  visit(Field("organ_entries_before", "", "how often they have entered rectum, bladder or urethra").since(7),
+        p.before.organ_entries);
+  visit(Field("bone_contacts_before", "", "how often they have met bone").since(7), p.before.bone_contacts);
+  visit(Field("exits_before", "", "how often they have come out through the far side").since(7), p.before.exits);
 }
 
 void columns(auto& visit, record::Of<NeedleShape> auto& s) {

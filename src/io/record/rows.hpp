@@ -249,18 +249,20 @@ void write_rows(hid_t parent, const char* name, const Rows<T>& rows) {
 
 /// Reads a dataset. Columns that this program does not know are skipped; those that the file lacks are as in a new
 /// record, or NaN (Field::is_unknown_before). Throws h5::Failure.
+/// @param most only so many of the last rows
 template <class T>
-Rows<T> read_rows(hid_t parent, const char* name) {
+Rows<T> read_rows(hid_t parent, const char* name, hsize_t most = std::numeric_limits<hsize_t>::max()) {
   const h5::Handle set = h5::dataset(parent, name);
   const auto shape = h5::extents(set);
   if (shape.size() != 1) throw h5::Failure(std::string(name) + " must have one axis");
   Rows<T> rows;
   const std::string row = empty_row<T>(true);
-  rows.bytes.reserve(shape[0] * row.size());
-  for (hsize_t k = 0; k < shape[0]; ++k) rows.bytes += row;
+  const hsize_t count = std::min(shape[0], most);
+  rows.bytes.reserve(count * row.size());
+  for (hsize_t k = 0; k < count; ++k) rows.bytes += row;
   for (std::size_t c = 0; c < rows.known.size(); ++c)
     rows.known[c] = h5::has_member(set, columns_of<T>()[c].name.c_str()) ? 1 : 0;
-  h5::read_rows(set, row_type<T>(), 0, shape[0], rows.bytes.data());
+  h5::read_rows(set, row_type<T>(), shape[0] - count, count, rows.bytes.data());
   return rows;
 }
 

@@ -49,9 +49,11 @@ Result<> Recorder::write_pending() {
 void Recorder::run(const std::stop_token& stop) {
   auto on_disk = std::chrono::steady_clock::now();
   while (!stop.stop_requested()) {
+    std::uint64_t asked = 0;
     {
       std::unique_lock lock(mutex_);
-      wake_.wait_for(lock, stop, kPeriod, [] { return false; });
+      wake_.wait_for(lock, stop, kPeriod, [&] { return asked_ != answered_; });
+      asked = asked_;
     }
     bool goes_on = true;
     const auto fail = [&](const Error& why) {
@@ -70,8 +72,20 @@ void Recorder::run(const std::stop_token& stop) {
           if (!done) fail(done.error());
         },
         fail);
+    {
+      const std::lock_guard lock(mutex_);
+      answered_ = asked;
+    }
+    answer_.notify_all();
     if (!goes_on) return;
   }
+}
+
+void Recorder::write_now(std::chrono::milliseconds most) {
+  std::unique_lock lock(mutex_);
+  const std::uint64_t number = ++asked_;
+  wake_.notify_one();
+  answer_.wait_for(lock, most, [&] { return answered_ >= number || error_; });
 }
 
 Result<> Recorder::close(const Summary* summary) {

@@ -3,7 +3,9 @@
 
 #include "run_file_writer.hpp"
 
+#include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -29,6 +31,9 @@ class Recorder {
     return Ok{};
   }
 
+  /// Writes what has been added at once. Returns when it is in the file, after an error, or when `most` has passed.
+  void write_now(std::chrono::milliseconds most);
+
   /// Writes the remaining data and the summary, if given, and closes the file. Nothing can be added afterwards.
   Result<> close(const Summary* summary);
 
@@ -39,6 +44,9 @@ class Recorder {
   RunFileWriter writer_;  ///< used only by the thread until it has ended
   std::mutex mutex_;
   std::condition_variable_any wake_;
+  std::condition_variable answer_;
+  std::uint64_t asked_ = 0;     ///< number of calls of write_now()
+  std::uint64_t answered_ = 0;  ///< number of those whose data are in the file
   using Pending = std::tuple<std::vector<Step>, std::vector<StoredFrame>, std::vector<Event>, std::vector<ProbeMove>,
                              std::vector<SeedAct>, std::vector<RecordedScore>>;
   Pending pending_;             ///< not yet written

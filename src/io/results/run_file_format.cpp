@@ -2,6 +2,7 @@
 #include "run_file_format.hpp"
 
 #include "model/digest.hpp"
+#include "stylet/io/recording_io.hpp"
 
 #include <cstring>
 
@@ -26,8 +27,9 @@ std::string start_digest(const RunInfo& info, const TetMesh& mesh) {
   return digest.finish();
 }
 
-std::string plan_digest(const StoredPlan& plan) {
-  detail::Digest digest;
+namespace {
+
+void add_needles_and_seeds(detail::Digest& digest, const StoredPlan& plan) {
   const auto add_rows = [&](const auto& rows) {
     for (std::size_t k = 0; k < rows.size(); ++k) {
       rows.each_value(k, [&](std::span<const char> value, const record::Column& column) {
@@ -37,11 +39,42 @@ std::string plan_digest(const StoredPlan& plan) {
   };
   add_rows(plan.needles);
   add_rows(plan.seeds);
-  const RecordedPlan& head = plan.head;
-  digest.add(std::span<const int>(&head.current, 1));
+}
+
+void add_source(detail::Digest& digest, const RecordedPlan& head) {
   digest.add(std::span<const double>(std::array{head.seed_length_mm, head.seed_diameter_mm, head.prescription_Gy}));
   digest.add(head.source);
+}
+
+}  // namespace
+
+StoredPlan stored_plan(const RecordedPlan& plan) {
+  return {plan, record::rows_of(std::span(plan.needles)), record::rows_of(std::span(plan.seeds))};
+}
+
+std::string plan_digest(const StoredPlan& plan) {
+  const RecordedPlan& head = plan.head;
+  detail::Digest digest;
+  add_needles_and_seeds(digest, plan);
+  digest.add(std::span<const int>(&head.current, 1));
+  add_source(digest, head);
+  if (head.implant.empty()) return digest.finish();  // of a version without the name
+  const ImplantTally& before = head.before;
+  digest.add(head.implant);
+  digest.add(std::span<const int>(
+      std::array{before.skin_punctures, before.organ_entries, before.bone_contacts, before.exits}));
   return digest.finish();
 }
 
 }  // namespace stylet::results
+
+namespace stylet {
+
+std::string digest_of_plan(const RecordedPlan& plan) {
+  detail::Digest digest;
+  results::add_needles_and_seeds(digest, results::stored_plan(plan));
+  results::add_source(digest, plan);
+  return digest.finish();
+}
+
+}  // namespace stylet

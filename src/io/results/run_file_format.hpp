@@ -42,6 +42,8 @@ struct StoredPlan {
   record::Rows<RecordedPlan::Needle> needles;
   record::Rows<RecordedPlan::Seed> seeds;
 };
+StoredPlan stored_plan(const RecordedPlan& plan);
+/// SHA-256 of all of it, for the check of the group.
 std::string plan_digest(const StoredPlan& plan);
 
 /// SHA-256 of all data that are known before the first step, without the attributes about the format.

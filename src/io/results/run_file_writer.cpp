@@ -33,7 +33,7 @@ void write_info(hid_t file, const RunInfo& info) {
 }
 
 void write_plan(hid_t group, const RecordedPlan& plan) {
-  const StoredPlan stored{plan, record::rows_of(std::span(plan.needles)), record::rows_of(std::span(plan.seeds))};
+  const StoredPlan stored = stored_plan(plan);
   h5::write_attribute(group, "plan_sha256", plan_digest(stored));
   record::write_attributes(group, plan);
   record::write_rows(group, "needles", stored.needles);

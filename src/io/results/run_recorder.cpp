@@ -22,6 +22,7 @@ Result<std::unique_ptr<RunRecorder>> RunRecorder::open(const std::filesystem::pa
 RunRecorder::RunRecorder(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 RunRecorder::~RunRecorder() = default;
 
+void RunRecorder::write_now(std::chrono::milliseconds most) { parts_->recorder.write_now(most); }
 Result<> RunRecorder::add_step(const Step& step) { return parts_->recorder.add(step); }
 Result<> RunRecorder::add_event(const Event& event) { return parts_->recorder.add(event); }
 Result<> RunRecorder::add_probe_move(const ProbeMove& move) { return parts_->recorder.add(move); }

@@ -4,6 +4,8 @@
 #include "h5_mesh.hpp"
 #include "record/attributes.hpp"
 
+#include <cmath>
+
 namespace stylet::results {
 namespace fs = std::filesystem;
 
@@ -69,7 +71,8 @@ void read_seeds(hid_t file, StoredSeeds& seeds) {
   seeds.acts = record::read_rows<SeedAct>(group, "acts");
 }
 
-StoredRun read_all(hid_t file) {
+/// Throws NotARun for anything but a recording of a version that is known.
+int version_of(hid_t file) {
   demand(h5::has_attribute(file, "format"), "an HDF5 file, but not a recorded run");
   const std::string format = h5::read_text_attribute(file, "format");
   demand(format != "stylet-model",
@@ -81,8 +84,12 @@ StoredRun read_all(hid_t file) {
   demand(format == kRunFileFormat, "an HDF5 file, but not a recorded run");
   const auto version = h5::read_int_attribute(file, "format_version");
   demand(version.size() == 1 && version[0] <= run_file_version(), "written by a newer version of stylet");
+  return version[0];
+}
+
+StoredRun read_all(hid_t file) {
   StoredRun run;
-  run.format_version = version[0];
+  run.format_version = version_of(file);
   const bool checks = run.format_version >= kFirstWithChecks;
   if (checks) {
     run.start_digest = h5::read_text_attribute(file, "start_sha256");
@@ -101,7 +108,54 @@ StoredRun read_all(hid_t file) {
   return run;
 }
 
+/// The largest axial force of a file with at most kMostSearched steps.
+double largest_force(hid_t file) {
+  constexpr hsize_t kMostSearched = 60'000;  // a minute in motion, some megabytes
+  const h5::Handle steps = h5::dataset(file, "steps");
+  const auto shape = h5::extents(steps);
+  demand(shape.size() == 1, "/steps must have one axis");
+  if (shape[0] == 0 || shape[0] > kMostSearched) return record::kNotANumber;
+  const h5::Handle column = h5::compound_type(sizeof(double));
+  h5::insert_member(column, "force_axial_N", 0, H5T_NATIVE_DOUBLE);
+  std::vector<double> forces(shape[0]);
+  h5::read_rows(steps, column, 0, shape[0], forces.data());
+  double most_N = record::kNotANumber;
+  for (const double force_N : forces) most_N = std::fmax(most_N, force_N);
+  return most_N;
+}
+
+StoredHead read_head(hid_t file) {
+  constexpr hsize_t kLastSteps = 256;  // more than may be announced and not yet written
+  StoredHead head;
+  head.format_version = version_of(file);
+  if (head.format_version >= kFirstWithChecks) head.end = record::read_rows<RunEnd>(file, "end");
+  head.scenario_name = h5::read_text_attribute(file, "scenario_name");
+  head.last_steps = record::read_rows<Step>(file, "steps", kLastSteps);
+  head.events = record::read_rows<Event>(file, "events");
+  if (head.format_version >= kFirstWithSeeds) read_seeds(file, head.seeds);
+  if (head.seeds.plan.needles.size() == 0) head.most_N = largest_force(file);
+  return head;
+}
+
 }  // namespace
+
+Result<std::vector<StoredHead>> parse_run_heads(const fs::path& first, const std::vector<std::string>& others) {
+  const h5::LibraryTurn turn;
+  std::vector<std::string> files{first.string()};
+  files.insert(files.end(), others.begin(), others.end());
+  std::vector<StoredHead> heads;
+  for (const std::string& file : files) {
+    StoredHead& head = heads.emplace_back();
+    try {
+      head = read_head(h5::open_growing_file(file.c_str()));
+    } catch (const h5::Failure& e) {
+      head.problem = input_error(file, e.what(), kGiveARecording);
+    } catch (const NotARun& e) {
+      head.problem = input_error(file, e.what(), e.cure);
+    }
+  }
+  return heads;
+}
 
 Result<StoredRun> parse_run_file(const fs::path& path) {
   const h5::LibraryTurn turn;

@@ -42,6 +42,25 @@ struct StoredRun {
   record::Rows<RunEnd> end;  ///< empty while the run goes on and if it was killed
 };
 
+/// The content of a run.h5 without what is long, as stored.
+struct StoredHead {
+  Error problem;  ///< why it could not be read; without a place if it could
+  int format_version = 0;
+  std::string scenario_name;
+  record::Rows<Step> last_steps;
+  double most_N = record::kNotANumber;  ///< largest axial force; not a number if the file has too many steps or seeds
+  record::Rows<Event> events;
+  StoredSeeds seeds;
+  record::Rows<RunEnd> end;
+};
+
+/// Reads the heads of many files, as parse_run_file() one file completely.
+/// @param first the first of them @param others the others
+Result<std::vector<StoredHead>> parse_run_heads(const std::filesystem::path& first,
+                                                const std::vector<std::string>& others);
+inline constexpr detail::Task<std::vector<StoredHead>, std::vector<std::string>> kRunHeads{"parse_run_heads",
+                                                                                           kGiveARecording};
+
 /// Reads a run.h5 completely. To be called in the reading program (reading/ask.hpp), because HDF5 1.10 crashes on some
 /// damaged files.
 Result<StoredRun> parse_run_file(const std::filesystem::path& path);
@@ -53,6 +72,9 @@ void fields(auto& wire, StoredPlan& p) {
   wire(p.needles, p.seeds);
 }
 void fields(auto& wire, StoredSeeds& s) { wire(s.digest, s.plan, s.acts, s.doses); }
+void fields(auto& wire, StoredHead& h) {
+  wire(h.problem, h.format_version, h.scenario_name, h.last_steps, h.most_N, h.events, h.seeds, h.end);
+}
 void fields(auto& wire, StoredRun& r) {
   wire(r.format_version, r.start_digest, r.info, r.mesh, r.steps, r.frames, r.displacement, r.needle, r.contacts,
        r.events, r.probe_moves, r.seeds, r.summary, r.end);

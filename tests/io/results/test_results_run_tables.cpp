@@ -49,6 +49,8 @@ RecordedPlan two_needles() {
   plan.seed_diameter_mm = 0.8;
   plan.prescription_Gy = 145.0;
   plan.source = "i125_6711";
+  plan.implant = "2026-11-29-170500-B4";
+  plan.before = {.skin_punctures = 3, .organ_entries = 1, .bone_contacts = 2, .exits = 0};
   return plan;
 }
 
@@ -95,6 +97,9 @@ TEST(RunFile, of_a_live_session_holds_the_seeds_of_its_implant) {
     EXPECT_EQ(plan.current, 1);
     EXPECT_EQ(plan.source, "i125_6711");
     EXPECT_EQ(plan.prescription_Gy, 145.0);
+    EXPECT_EQ(plan.implant, wrote.implant);
+    EXPECT_EQ(plan.before, wrote.before);
+    EXPECT_EQ(back.has_ended, finished);
     expect_same_rows(back.implant->acts, three_acts());
     // The seeds that were in the tissue at each moment follow from the acts.
     EXPECT_EQ(back.implant->seeds_after(back.implant->acts_until(1.0)).size(), 1u);
@@ -104,6 +109,62 @@ TEST(RunFile, of_a_live_session_holds_the_seeds_of_its_implant) {
     EXPECT_EQ(back.implant->dose_after(2)->d90_percent, 14.0);
     EXPECT_EQ(back.implant->dose_after(RecordedScore::kOfPlan)->d90_Gy, 160.0);
     EXPECT_FALSE(back.implant->dose_after(3)) << "it was not computed";
+  }
+}
+
+TEST(RunFile, has_a_head_that_is_read_without_its_steps) {
+  const auto run = small_run();
+  const Folder folder;
+  std::vector<fs::path> files;
+  for (const bool finished : {true, false}) {
+    files.push_back(folder / (finished ? "finished.h5" : "killed.h5"));
+    write_with_seeds(files.back(), run, finished);
+  }
+  files.push_back(folder / "plain.h5");
+  write_run_file(files.back(), run, true);
+  files.push_back(folder / "none.h5");
+  const auto heads = read_recording_heads(files);
+  ASSERT_EQ(heads.size(), 4u);
+  for (std::size_t k = 0; k < 3; ++k) {
+    ASSERT_TRUE(heads[k]) << heads[k].error().message();
+    const RunRecording whole = read_back(files[k]);
+    EXPECT_EQ(heads[k]->scenario_name, run.info.scenario_name);
+    EXPECT_GE(heads[k]->duration_s, run.steps.back().time_s);
+    EXPECT_EQ(heads[k]->has_ended, whole.has_ended);
+    expect_same_rows(heads[k]->events, whole.events);
+    ASSERT_EQ(heads[k]->implant.has_value(), whole.implant.has_value());
+    if (!whole.implant) continue;
+    expect_same_rows(heads[k]->implant->acts, whole.implant->acts);
+    EXPECT_EQ(heads[k]->implant->dose_after(2)->d90_percent, 14.0);
+    EXPECT_EQ(digest_of_plan(heads[k]->implant->plan), digest_of_plan(two_needles()));
+  }
+  EXPECT_EQ(heads[1]->has_ended, false);
+  EXPECT_FALSE(heads[0]->most_N);
+  double most_N = 0.0;
+  for (const Step& step : run.steps) most_N = std::max(most_N, step.force_axial_N);
+  EXPECT_EQ(heads[2]->most_N, most_N);
+  EXPECT_FALSE(heads[3]) << "the others are read all the same";
+}
+
+TEST(RunFile, of_each_needle_of_an_implant_has_the_same_digest_of_its_plan) {
+  const RecordedPlan plan = two_needles();
+  RecordedPlan next = plan;
+  next.current = 0;
+  next.before.skin_punctures = 4;
+  EXPECT_EQ(digest_of_plan(next), digest_of_plan(plan));
+  next.seeds[1].planned_mm.x() += 1e-9;
+  EXPECT_NE(digest_of_plan(next), digest_of_plan(plan));
+}
+
+TEST(Recorder, has_written_what_was_added_before_it_says_so) {
+  const auto run = small_run();
+  const Folder folder;
+  const RecordedPlan plan = two_needles();
+  Recorder recorder(value_of(RunFileWriter::create(folder / "run.h5", run.info, run.mesh, {}, &plan)));
+  for (std::size_t k = 0; k < 3; ++k) {
+    ASSERT_TRUE(recorder.add(three_acts()[k]));
+    recorder.write_now(std::chrono::seconds(60));
+    EXPECT_EQ(read_back(folder / "run.h5").implant->acts.size(), k + 1);
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // An implant in the page: a row of seeds is dropped with the keys, D90 appears, seeds move with the tissue, a drop is
-// taken back, the next needle comes at once, the result says why the seeds are off, and a recording shows the seeds again.
+// taken back, the next needle comes at once, the result says why the seeds are off, a recording shows the seeds again, and
+// after its server was killed the implant goes on.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readdirSync } from 'node:fs';
@@ -145,6 +146,7 @@ test('the result says how far the seeds are off, and why', async () => {
     'Not a medical device'];
   for (const part of parts)
     assert.ok(text.includes(part), `${part} is missing in ${text}`);
+  assert.match(text, /All needles so farSkin broken(twice|\d times)Rectum/);
   await keepPicture(page, 'implant-result');
   await page.getByRole('button', { name: 'Go on' }).click();
 });
@@ -195,12 +197,50 @@ test('a recording of a needle shows the seeds of each moment, and its panel cann
   assert.deepEqual(problems, []);
 });
 
-test('a preloaded needle leaves its train as it is drawn back; a lost seed is said', async () => {
+/** Opens the page of another server, which has the same recordings. */
+async function restart(options, signal) {
   await page.close();
-  await set.server.kill();
-  set.server = await startServer(folder, { scenario: SCENARIO, options: ['--set', 'seed.loss_percent=100'] });
+  await set.server.kill(signal);
+  set.server = await startServer(folder, { scenario: SCENARIO, options });
   for (const kind of [STATUS, PLAN, IMPLANT, SEEDS]) delete newest[kind];
   ({ page, problems } = await openVisitor(set.browser, set.server.url, { prepare: listen }));
+}
+
+test('after its server was killed the implant is offered, and goes on with the same seeds and dose', async () => {
+  const before = newest[IMPLANT];
+  const { name } = newest[PLAN].needles[newest[PLAN].current];
+  await restart(['--set', 'procedure.technique="pushed"'], 'SIGKILL');
+  const offer = page.locator('dialog.offer');
+  await offer.getByText(new RegExp(`^Go on with the implant of ${before.seeds.length} of 84 seeds from \\d+ \\w+, \\d\\d:\\d\\d\\?$`)).waitFor();
+  await keepPicture(page, 'implant-offer');
+  await page.setViewportSize({ width: 390, height: 844 });
+  const { x, width } = await offer.boundingBox();
+  assert.ok(x >= 0 && x + width <= 390, `the question is within a narrow page: ${x} to ${x + width}`);
+  await keepPicture(page, 'implant-offer-narrow');
+  await page.setViewportSize({ width: 1366, height: 768 });
+  await page.reload();
+  await offer.getByRole('button', { name: 'Go on' }).click();
+  await until('the seeds', () => newest[IMPLANT], (now) => now.seeds.length === before.seeds.length && now.now?.goals.length > 0);
+  newest[IMPLANT].seeds.forEach(({ rest_mm, why }, k) => {
+    const was = before.seeds[k];
+    const pairs = [[rest_mm, was.rest_mm], ...Object.keys(was.why).map((cause) => [why[cause], was.why[cause]])];
+    for (const [is, then] of pairs) assert.ok(is.every((x, i) => Math.abs(x - then[i]) < 1.1e-3), `${is} instead of ${then}`);
+  });
+  assert.ok(Math.abs(newest[IMPLANT].now.d90_Gy / before.now.d90_Gy - 1) < 1e-3);
+  assert.equal(newest[IMPLANT].error.seeds, before.seeds.length);
+  assert.deepEqual(newest[IMPLANT].tally, before.tally);
+  await until('its needle', () => newest[PLAN], (plan) => plan.needles[plan.current].name === name);
+  await until('the needle before the skin', () => readout(page, 'Depth'), (depth) => depth < 0);
+  await offer.waitFor({ state: 'hidden' });
+  await page.getByRole('button', { name: 'Recordings' }).click();
+  await page.locator('dialog td', { hasText: /^\d+ of 84 seeds, D90 [\d.]+ %/ }).first().waitFor();
+  await keepPicture(page, 'implant-recordings');
+  assert.deepEqual(problems, []);
+});
+
+test('a preloaded needle leaves its train as it is drawn back; a lost seed is said', async () => {
+  await restart(['--set', 'seed.loss_percent=100']);
+  await page.getByRole('button', { name: 'Begin anew' }).click();
   await waitUntilTissueMoves();
   await until('no seeds', () => newest[IMPLANT].seeds.length, (count) => count === 0);
   await page.keyboard.press('3');

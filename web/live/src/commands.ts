@@ -9,6 +9,7 @@ export type Command =
   | { do: 'hole'; hole: string }
   | { do: 'insertion'; index: number }
   | { do: 'needle'; index: number }
+  | { do: 'interrupted'; go_on: 0 | 1 }
   | { do: 'reset' }
   | { do: 'case'; index: number }
   | { do: 'predict'; on: 0 | 1 }

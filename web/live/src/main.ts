@@ -21,6 +21,7 @@ import { nameRegions } from './event_names';
 import { HandControl } from './hand';
 import { EndCard } from './implant/end_card';
 import { ImagePanel } from './imaging/image_panel';
+import { offerInterrupted } from './implant/interrupted';
 import { ImplantActions, ImplantPanel } from './implant/panel';
 import { compose, save } from './picture';
 import { Plane } from './sections/plane';
@@ -67,6 +68,7 @@ new PushBar(part('push'), session, hand);
 new ReplayBar(part('replay'), part('push'), session);
 const endCard = new EndCard(session);
 new ImplantPanel(part('implant'), session, implant, () => endCard.show());
+offerInterrupted(session);
 bindKeys(session, hand, implant, images, help);
 bindGamepad(hand);
 

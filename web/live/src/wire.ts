@@ -56,11 +56,13 @@ export interface Status {
   companion?: { name: string; not_used: number; newest: string; cure: string };
   recording?: { name: string; seconds: number; problem?: string; warning?: string } | null;
   replay?: { name: string; time_s: number; duration_s: number; playing: boolean; rate: number } | null;
+  interrupted?: Interrupted | null;  // an implant of the open case that was begun and not finished
   image?: { shown: ShownImage; problem: string; stage: string; probe_device?: string; probe_problem?: string };
   loop?: { steps: number; missed: number; p50_us: number; p99_us: number; max_us: number; rights?: string } | null;
   lag_s?: number | null; dropped_messages?: number; skipped_frames?: number;
 }
 
+export interface Interrupted { recording: string; recorded_s: number; seeds: number; planned_seeds: number; needle: string }
 export interface Event { kind: string; time_s: number; depth_mm: number; force_N: number; region: string }
 export interface LiveMap { map: HoleMap | null; why_not: string; predicted: number; predicting: boolean }
 export interface Notice { text: string; cure: string }

@@ -5,7 +5,25 @@ import { serverAddress } from '../connection';
 import type { Session } from '../session';
 import { KEYS } from './keyboard';
 
-interface Recording { name: string; seconds?: number; case?: string }
+interface Recording {
+  name: string; case?: string; needle?: string | null; seconds?: number; ended?: boolean; peak_force_N?: number | null;
+  seeds?: { dropped: number; planned: number; d90_percent: number | null } | null; problem?: string;
+}
+
+/** The result of a recording in words, and how it ended if that is not by itself. */
+export function resultWords({ seeds, peak_force_N, ended, problem, name }: Recording, beingRecorded = ''): string {
+  if (problem) return `It cannot be read: ${problem}`;
+  const words: string[] = [];
+  if (seeds) {
+    words.push(`${seeds.dropped} of ${seeds.planned} seeds`);
+    if (seeds.d90_percent !== null) words.push(`D90 ${seeds.d90_percent.toFixed(1)} %`);
+  } else if (peak_force_N != null) {
+    words.push(`at most ${peak_force_N.toFixed(1)} N`);
+  }
+  if (name === beingRecorded) words.push('being recorded');
+  else if (ended === false) words.push('interrupted');
+  return words.join(', ');
+}
 
 /** Makes a dialog with a title and a button that closes it. */
 export function dialog(title: string): { dialog: HTMLDialogElement; body: HTMLElement } {
@@ -55,11 +73,14 @@ export function makeRecordings(session: Session): () => void {
     const curve = element('a', '', 'Force curve (CSV)');
     curve.href = serverAddress(`recordings/${encodeURIComponent(recording.name)}/forces.csv`);
     curve.download = `${recording.name}-forces.csv`;
-    const cells = [element('td', '', recording.name), element('td', '', recording.case ?? ''),
+    const of = element('td', '', recording.case ?? '');
+    if (recording.needle) of.append(element('span', 'quiet', ` needle ${recording.needle}`));
+    const cells = [element('td', '', recording.name), of,
+                   element('td', '', resultWords(recording, session.status?.recording?.name)),
                    element('td', 'number', recording.seconds === undefined ? '' : `${recording.seconds.toFixed(1)} s`),
                    element('td'), element('td')];
-    cells[3].append(play);
-    cells[4].append(curve);
+    cells[4].append(play);
+    cells[5].append(curve);
     tr.append(...cells);
     return tr;
   };
@@ -74,7 +95,9 @@ export function makeRecordings(session: Session): () => void {
         return;
       }
       const table = element('table');
-      table.append(...recordings.map(row));
+      const head = element('tr');
+      head.append(...['Recording', 'Case', 'Result', 'Length'].map((text) => element('th', '', text)));
+      table.append(head, ...recordings.map(row));
       body.replaceChildren(table);
       if (session.status?.you_hold !== true) body.append(element('p', 'quiet', 'Only the viewer who holds the needle can start a replay.'));
     } catch (error) {

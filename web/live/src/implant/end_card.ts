@@ -4,7 +4,7 @@
 import { button, element } from '../../../shared/dom';
 import { dialog } from '../controls/dialogs';
 import type { Session } from '../session';
-import { isFinished, lostSeeds, type Goal, type Implant, type Score } from './implant';
+import { isFinished, lostSeeds, tallyRows, type Goal, type Implant, type Score } from './implant';
 
 const AXES: [string, string, string][] = [['Left–right', 'left', 'right'], ['Anterior–posterior', 'posterior', 'anterior'], ['Superior–inferior', 'superior', 'inferior']];
 
@@ -92,10 +92,11 @@ export class EndCard {
     const right = element('div');
     columns.append(left, right);
     left.append(this.figures(now, planned), this.session.replaying ? element('p', 'cure', 'A recording has D90 and V100, not the other goals.') : this.goals(now, planned));
-    right.append(...this.errors(implant), ...this.reasons(implant));
+    right.append(...this.errors(implant), ...this.reasons(implant), ...this.tally(implant));
     const foot = element('div', 'card-foot');
     const again = button('Begin again with all seeds', () => {
       this.session.command({ do: 'clear' });
+      this.session.command({ do: 'needle', index: 0 });
       this.dialog.close();
     });
     again.disabled = !this.session.steering;
@@ -147,6 +148,13 @@ export class EndCard {
       table.append(row(name, `${signedWords(mean, positive, negative)} ± ${sd.toFixed(1)}`));
     });
     return [element('h3', '', 'How far the seeds rest from their plan'), table];
+  }
+
+  private tally({ tally }: Implant): HTMLElement[] {
+    if (!tally) return [];
+    const table = element('table');
+    for (const { what, often, harm } of tallyRows(tally)) table.append(row(what, element('span', harm ? 'missed' : '', often)));
+    return [element('h3', '', 'All needles so far'), table];
   }
 
   /** The mean length of each cause's part of the error, as bars. */

@@ -22,9 +22,11 @@ export interface DroppedSeed {
 }
 export interface Errors { seeds: number; mean_mm: number; p95_mm: number; largest_mm: number; axes_mm: { mean: number; sd: number }[] }
 export interface Cause { cause: string; meaning: string; mean_mm: number | null; mean_xyz_mm: Place }
+export interface Tally { skin_punctures: number; organ_entries: number; bone_contacts: number; exits: number }
 export interface Implant {
   train_from_mm: number | null;  // a train is being left, begun at this depth of the base
   planned_seeds: number; seeds: DroppedSeed[]; computing: boolean; now: Score | null; planned: Score | null; error: Errors; why: Cause[];
+  tally?: Tally;  // of all needles so far
 }
 export interface Seeds { now_mm: Place[] }
 
@@ -139,6 +141,18 @@ export function meanMotion(implant: Implant | null, seeds: Seeds | null): Place 
 /** Where the dropped seeds are now; those whose place has not been told yet where they rest. A lost seed is nowhere. */
 export function placesNow(implant: Implant | null, seeds: Seeds | null): (Place | null)[] {
   return implant?.seeds.map((seed, i) => (seed.lost ? null : seeds?.now_mm[i] ?? seed.rest_mm)) ?? [];
+}
+
+const times = (count: number): string => (count === 0 ? 'never' : count === 1 ? 'once' : count === 2 ? 'twice' : `${count} times`);
+
+/** What all needles so far have done to the patient, as rows of a table. */
+export function tallyRows({ skin_punctures, organ_entries, bone_contacts, exits }: Tally): { what: string; often: string; harm: boolean }[] {
+  return [
+    { what: 'Skin broken', often: times(skin_punctures), harm: false },
+    { what: 'Rectum, bladder or urethra entered', often: times(organ_entries), harm: organ_entries > 0 },
+    { what: 'Bone met', often: times(bone_contacts), harm: bone_contacts > 0 },
+    ...(exits > 0 ? [{ what: 'Out through the far side', often: times(exits), harm: true }] : []),
+  ];
 }
 
 /** How many of the dropped seeds have left the patient. */
