@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 
 namespace stylet::fuzz {
 
@@ -40,6 +41,13 @@ constexpr std::array kKinds{
     Kind{detail::kSurfaces.name, FileKind::glb, "glb", ".glb"},
 };
 
+/// Tasks that look into files of which others make more.
+const std::map<std::string, std::string> kSeeds{
+    {"only_patient_in", "parse_rtstruct"}, {"parse_patient_record", "parse_rtplan"},
+    {"modality_of_dicom", "parse_rtdose"}, {"is_dicom_seg", "parse_mask-dicom"},
+    {"format_of_json", "parse_plan_text"}, {"is_implant_file", "parse_implant_file"},
+};
+
 std::string name_of(const Kind& kind) { return std::string(kind.task) + "-" + kind.name; }
 
 std::string content_of(const fs::path& path) {
@@ -53,7 +61,9 @@ std::vector<Target> targets_of(const std::string& task) {
   std::vector<Target> targets;
   for (const Kind& kind : kKinds)
     if (kind.task == task) targets.push_back({name_of(kind), task, kind.kind, kind.ending});
-  if (targets.empty()) targets.push_back({.name = task, .task = task});
+  const auto seeds = kSeeds.find(task);
+  if (targets.empty())
+    targets.push_back({.name = task, .task = task, .seeds = seeds != kSeeds.end() ? seeds->second : task});
   return targets;
 }
 
