@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <vector>
 
 /// The program that reads files of unknown origin: it takes one request, gives up all rights but reading files and
 /// answering (confine.hpp), carries out the task and ends.
@@ -37,6 +38,12 @@ class TaskTable {
   /// The bytes of the task's Result. Throws std::out_of_range for a name that is not in the table.
   [[nodiscard]] std::string answer(std::string_view task, std::string_view arguments) const {
     return parsers_.at(std::string(task))(arguments);
+  }
+
+  [[nodiscard]] std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const auto& [name, parser] : parsers_) names.push_back(name);
+    return names;
   }
 
  private:
