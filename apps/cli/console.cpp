@@ -123,7 +123,7 @@ void Console::warn_ahead(const std::string& text) {
 
 void Console::error(std::string_view text) { parts_->line(stderr, "stylet: error: ", text); }
 
-void Console::tell_with_progress(const std::string& text) { parts_->first_progress = text; }
+void Console::tell_with_progress(const std::string& text) { parts_->first_progress = "stylet: " + text; }
 
 Progress Console::progress() {
   if (parts_->options.quiet) return {};
