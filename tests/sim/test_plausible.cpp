@@ -90,7 +90,7 @@ TEST(WarningsBeforeStart, tell_of_a_run_of_hours_with_its_steps) {
   EXPECT_EQ(long_work_warning(plain()), "");
   expect_said(with("insertion[0].speed_mm_per_s", 0.01), {"This will take about", "minutes", "steps of 1 ms"});
   expect_said(with("insertion[0].dwell_s", 3600, with("run.dt_ms", 0.1)), {"hours", "3.61e+07 steps"});
-  expect_said(with("mesh.nodes", 1000000), {"minutes", "GB of memory", "a mesh of 1000000 nodes", "Fewer nodes"});
+  expect_said(with("mesh.nodes", 1000000), {"hours", "GB of memory", "a mesh of 1000000 nodes", "Fewer nodes"});
   EXPECT_NE(long_work_warning(plain(), 36000.0), "") << "a recorded motion of ten hours";
   EXPECT_DOUBLE_EQ(estimate_work(with("run.dt_ms", 0.5)).steps, 2.0 * estimate_work(plain()).steps);
   EXPECT_GT(estimate_work(with("mesh.nodes", 10000)).memory_GB, estimate_work(with("mesh.nodes", 1000)).memory_GB);
