@@ -260,7 +260,7 @@ Rows<T> read_rows(hid_t parent, const char* name) {
   for (hsize_t k = 0; k < shape[0]; ++k) rows.bytes += row;
   for (std::size_t c = 0; c < rows.known.size(); ++c)
     rows.known[c] = h5::has_member(set, columns_of<T>()[c].name.c_str()) ? 1 : 0;
-  h5::read_rows(set, row_type<T>(), 0, shape[0], rows.bytes.data());
+  h5::read_rows(set, row_type<T>(), 0, shape[0], std::as_writable_bytes(std::span(rows.bytes)));
   return rows;
 }
 
