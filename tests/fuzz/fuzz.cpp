@@ -130,7 +130,7 @@ void run(std::string_view input, std::string path) {
 }  // namespace
 
 // HDF5 reads again and again, with pauses, what has a wrong checksum, as it may be in the middle of being written.
-extern "C" int nanosleep(const timespec*, timespec*) { return 0; }
+extern "C" [[gnu::visibility("default")]] int nanosleep(const timespec*, timespec*) { return 0; }
 
 // Blocks that are too large are refused by an exception, as they are in the reading program. The sanitizer's own
 // operator would end the program.

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t kLargest = 400000;  // [bytes] larger files make a fuzzer slow
+constexpr std::size_t kLargest = 150000;  // [bytes] larger files make a fuzzer slow
 
 void keep(const detail::ReadingRequest& request) {
   std::string path, arguments = request.arguments;

@@ -262,7 +262,7 @@ Rows<T> read_rows(hid_t parent, const char* name, hsize_t most = std::numeric_li
   for (hsize_t k = 0; k < count; ++k) rows.bytes += row;
   for (std::size_t c = 0; c < rows.known.size(); ++c)
     rows.known[c] = h5::has_member(set, columns_of<T>()[c].name.c_str()) ? 1 : 0;
-  h5::read_rows(set, row_type<T>(), shape[0] - count, count, rows.bytes.data());
+  h5::read_rows(set, row_type<T>(), shape[0] - count, count, std::as_writable_bytes(std::span(rows.bytes)));
   return rows;
 }
 

@@ -86,6 +86,7 @@ std::vector<std::string> texts_of(hid_t type, std::size_t count, const Read& rea
   }
   if (H5Tget_class(type) != H5T_STRING) throw Failure("read text: it is not a text");
   const std::size_t width = H5Tget_size(type);
+  if (width == 0 || count > std::string().max_size() / width) throw Failure("read text: it has the wrong shape");
   std::string all(count * width, '\0');
   read(type, all.data());
   return taken_apart(all, width);
@@ -361,10 +362,18 @@ void write_rows(hid_t data, hid_t memory_type, hsize_t first, hsize_t rows, cons
   check(H5Dwrite(data, memory_type, memory, file, H5P_DEFAULT, values), "write dataset");
 }
 
-void read_rows(hid_t data, hid_t memory_type, hsize_t first, hsize_t rows, void* values) {
+void read_rows(hid_t data, hid_t memory_type, hsize_t first, hsize_t rows, std::span<std::byte> values) {
   if (rows == 0) return;
-  const auto [file, memory] = select_rows(data, extents(data), first, rows);
-  check(H5Dread(data, memory_type, memory, file, H5P_DEFAULT, values), "read dataset");
+  const std::vector<hsize_t> shape = extents(data);
+  // Divided step by step: the product of the extents of a forged file can be beyond 64 bits.
+  hsize_t room = values.size() / H5Tget_size(memory_type) / rows;
+  for (std::size_t axis = 1; axis < shape.size(); ++axis) {
+    if (shape[axis] == 0) return;
+    room /= shape[axis];
+  }
+  if (shape.empty() || room == 0) throw Failure("a dataset has the wrong shape");
+  const auto [file, memory] = select_rows(data, shape, first, rows);
+  check(H5Dread(data, memory_type, memory, file, H5P_DEFAULT, values.data()), "read dataset");
 }
 
 }  // namespace stylet::h5

@@ -139,7 +139,8 @@ void append_rows(hid_t data, hid_t memory_type, hsize_t rows, const void* values
 /// Writes the existing rows first … first + rows - 1.
 void write_rows(hid_t data, hid_t memory_type, hsize_t first, hsize_t rows, const void* values);
 
-/// Reads the rows first … first + rows - 1.
-void read_rows(hid_t data, hid_t memory_type, hsize_t first, hsize_t rows, void* values);
+/// Reads the rows first … first + rows - 1. Throws Failure if they do not fit into `values`, whatever shape the file
+/// states.
+void read_rows(hid_t data, hid_t memory_type, hsize_t first, hsize_t rows, std::span<std::byte> values);
 
 }  // namespace stylet::h5

@@ -27,9 +27,9 @@ TetMesh read_mesh(hid_t file) {
   mesh.nodes.resize(node_shape[0]);
   mesh.tets.resize(tet_shape[0]);
   mesh.tet_region.resize(tet_shape[0]);
-  read_rows(nodes, H5T_NATIVE_DOUBLE, 0, node_shape[0], mesh.nodes.data());
-  read_rows(tets, H5T_NATIVE_INT32, 0, tet_shape[0], mesh.tets.data());
-  read_rows(region, H5T_NATIVE_INT, 0, tet_shape[0], mesh.tet_region.data());
+  read_rows(nodes, H5T_NATIVE_DOUBLE, 0, node_shape[0], std::as_writable_bytes(std::span(mesh.nodes)));
+  read_rows(tets, H5T_NATIVE_INT32, 0, tet_shape[0], std::as_writable_bytes(std::span(mesh.tets)));
+  read_rows(region, H5T_NATIVE_INT, 0, tet_shape[0], std::as_writable_bytes(std::span(mesh.tet_region)));
   mesh.regions = read_texts(mesh_group, "regions");
   return mesh;
 }

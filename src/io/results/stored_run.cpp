@@ -51,11 +51,11 @@ void read_frames(hid_t file, StoredRun& run) {
   const std::size_t frames = std::min<std::size_t>(run.frames.size(), shape[0]);
   run.frames.bytes.resize(frames * record::row_bytes<FrameRow>());
   run.displacement.resize(frames * shape[1] * 3);
-  h5::read_rows(displacement, H5T_NATIVE_FLOAT, 0, frames, run.displacement.data());
+  h5::read_rows(displacement, H5T_NATIVE_FLOAT, 0, frames, std::as_writable_bytes(std::span(run.displacement)));
   const auto points = h5::extents(needle);
   demand(points.size() == 2 && points[1] == 3, "/frames/needle_mm must be (p, 3)");
   run.needle.resize(points[0]);
-  h5::read_rows(needle, H5T_NATIVE_DOUBLE, 0, points[0], run.needle.data());
+  h5::read_rows(needle, H5T_NATIVE_DOUBLE, 0, points[0], std::as_writable_bytes(std::span(run.needle)));
   run.contacts = record::read_rows<ContactView>(group, "contacts");
 }
 
@@ -103,8 +103,10 @@ StoredRun read_all(hid_t file) {
   if (run.format_version >= kFirstWithSeeds) read_seeds(file, run.seeds);
   if (run.format_version >= kFirstWithProbe) run.probe_moves = record::read_rows<ProbeMove>(file, "probe");
   const h5::Handle summary = h5::dataset(file, "summary_json");
-  run.summary.resize(h5::extents(summary).at(0));
-  h5::read_rows(summary, H5T_NATIVE_UINT8, 0, run.summary.size(), run.summary.data());
+  const auto length = h5::extents(summary);
+  demand(length.size() == 1, "/summary_json must have one axis");
+  run.summary.resize(length[0]);
+  h5::read_rows(summary, H5T_NATIVE_UINT8, 0, length[0], std::as_writable_bytes(std::span(run.summary)));
   return run;
 }
 

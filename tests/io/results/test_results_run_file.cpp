@@ -249,6 +249,37 @@ TEST(RunFile, foreign_and_damaged_files_are_refused_with_a_message) {
   ASSERT_FALSE(read_recording(half).ok());
 }
 
+TEST(RunFile, with_a_summary_of_two_axes_is_refused) {
+  const Folder folder;
+  const fs::path path = folder / "run.h5";
+  write_run_file(path, small_run(), true);
+  {
+    const h5::Handle file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+    ASSERT_GE(H5Ldelete(file, "summary_json", H5P_DEFAULT), 0);
+    const std::array<hsize_t, 2> shape{1, 100000};
+    h5::write_array(file, "summary_json", H5T_NATIVE_UINT8, shape, std::string(shape[1], ' ').data());
+  }
+  const auto read = read_recording(path);
+  ASSERT_FALSE(read.ok());
+  EXPECT_NE(read.error().what.find("/summary_json must have one axis"), std::string::npos) << read.error().message();
+}
+
+TEST(Hdf5, rows_for_which_there_is_no_room_are_not_read) {
+  const Folder folder;
+  const h5::Handle file(H5Fcreate((folder / "f.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+  const std::array<hsize_t, 3> shape{hsize_t{1} << 15U, hsize_t{1} << 47U, 4};  // 2^64 values, which is 0 in 64 bits
+  const std::array<hsize_t, 3> chunk{1, 1, 4};
+  const h5::Handle space(H5Screate_simple(3, shape.data(), nullptr), H5Sclose);
+  const h5::Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_chunk(properties, 3, chunk.data());
+  const h5::Handle set(H5Dcreate2(file, "set", H5T_NATIVE_INT32, space, H5P_DEFAULT, properties, H5P_DEFAULT),
+                       H5Dclose);
+  ASSERT_GE(set, 0);
+  std::vector<std::int32_t> values(16);
+  EXPECT_THROW(h5::read_rows(set, H5T_NATIVE_INT32, 0, shape[0], std::as_writable_bytes(std::span(values))),
+               h5::Failure);
+}
+
 TEST(RunFile, whose_scenario_has_no_insertion_is_refused) {
   const Folder folder;
   SyntheticRun run = small_run();

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace stylet::results {
 namespace {
@@ -41,9 +42,13 @@ class Seal {
   detail::Digest digest_;
 };
 
+/// Number of items of an array. Throws h5::Failure if it is beyond 64 bits.
 hsize_t product(const std::vector<hsize_t>& counts) {
   hsize_t all = 1;
-  for (const hsize_t count : counts) all *= count;
+  for (const hsize_t count : counts) {
+    demand_shape(count == 0 || all <= std::numeric_limits<hsize_t>::max() / count, "an array");
+    all *= count;
+  }
   return all;
 }
 
@@ -104,7 +109,7 @@ class ImplantFile {
         demand_shape(inner[k] == shape[k + 1], name);
       }
       values.resize(product(shape) * H5Tget_size(type) / item);
-      if (!values.empty()) h5::read_rows(set, type, 0, shape[0], values.data());
+      if (!values.empty()) h5::read_rows(set, type, 0, shape[0], std::as_writable_bytes(std::span(values)));
     }
     seal_.add(name, values);
   }
@@ -127,13 +132,14 @@ class ImplantFile {
   template <class Item>
   void members(const char* name, std::vector<Item>& items) {
     const h5::Handle group = open(name);
-    if (!writes_) {
-      H5G_info_t info{};
-      h5::check(H5Gget_info(group, &info), name);
-      items.resize(info.nlinks);
-    }
+    H5G_info_t info{};
+    h5::check(H5Gget_info(group, &info), name);
+    const std::size_t count = writes_ ? items.size() : info.nlinks;
     ImplantFile inside(group, seal_, writes_);
-    for (std::size_t k = 0; k < items.size(); ++k) inside.group(fmt::format("{:03}", k), items[k]);
+    for (std::size_t k = 0; k < count; ++k) {
+      if (!writes_) items.emplace_back();
+      inside.group(fmt::format("{:03}", k), items[k]);
+    }
   }
 
  private:
@@ -189,8 +195,11 @@ void contents(ImplantFile& file, RecordedDose& dose) {
   std::vector<hsize_t> plane{static_cast<hsize_t>(size[1]), static_cast<hsize_t>(size[0])};
   file.array("dose_Gy", dose.grid.dose_Gy, plane);
   const hsize_t layer = product(plane);
-  size = {static_cast<Index>(plane[1]), static_cast<Index>(plane[0]),
-          static_cast<Index>(layer > 0 ? dose.grid.dose_Gy.size() / layer : 0)};
+  const std::array<hsize_t, 3> counts{plane[1], plane[0], layer > 0 ? dose.grid.dose_Gy.size() / layer : 0};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    demand_shape(counts[axis] <= hsize_t{std::numeric_limits<Index>::max()}, "dose_Gy");
+    size[axis] = static_cast<Index>(counts[axis]);
+  }
   file.array("dvh_dose_Gy", dose.dose_Gy);
   std::vector<double> all;
   for (const std::vector<double>& curve : dose.percent) all.insert(all.end(), curve.begin(), curve.end());
