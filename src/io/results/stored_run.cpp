@@ -120,7 +120,7 @@ double largest_force(hid_t file) {
   const h5::Handle column = h5::compound_type(sizeof(double));
   h5::insert_member(column, "force_axial_N", 0, H5T_NATIVE_DOUBLE);
   std::vector<double> forces(shape[0]);
-  h5::read_rows(steps, column, 0, shape[0], forces.data());
+  h5::read_rows(steps, column, 0, shape[0], std::as_writable_bytes(std::span(forces)));
   double most_N = record::kNotANumber;
   for (const double force_N : forces) most_N = std::fmax(most_N, force_N);
   return most_N;
