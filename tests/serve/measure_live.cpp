@@ -61,7 +61,8 @@ void measure_needles(LiveClient& page, const std::string& process, std::size_t c
 /// [µs] p50 and p99 of the processor time of the steps of a run in which the needle goes in and out.
 std::pair<double, double> steps_of_a_run(LiveClient& page) {
   page.command(R"({"do":"reset"})");
-  need(page.until([&] { return page.depth_mm < 0.0F && page.status["loop"]["steps"] < 2000; }), "no new run");
+  const auto done = std::chrono::steady_clock::now() + std::chrono::seconds(2);
+  need(page.until([&] { return std::chrono::steady_clock::now() > done; }) && page.depth_mm < 0.0F, "no new run");
   for (int k = 0; k < 3; ++k) need(page.go_to(60.0F, 20.0F) && page.go_to(0.0F, 40.0F), "the needle does not move");
   need(page.passes(1.0), "the time does not pass");
   return {page.status["loop"]["p50_us"], page.status["loop"]["p99_us"]};
@@ -72,13 +73,15 @@ void measure_downloads(LiveClient& page, std::uint16_t port, const std::string& 
   std::vector<double> alone, beside;
   for (int k = 0; k < count; ++k) {
     const auto [p50, p99] = steps_of_a_run(page);
-    std::atomic<bool> ends = false;
+    std::atomic<bool> ends = false, has_ended = false;
     std::atomic<std::size_t> bytes = 0;
     std::thread visitor([&] {
       while (!ends) bytes += get(port, "/recordings/" + name + "/forces.csv").body().size();
+      has_ended = true;
     });
     const auto [p50_beside, p99_beside] = steps_of_a_run(page);
     ends = true;
+    need(page.until([&] { return has_ended.load(); }), "the download does not end");
     visitor.join();
     fmt::print("p50 {:.0f} and p99 {:.0f} us alone; {:.0f} and {:.0f} us beside a download ({} MB)\n", p50, p99,
                p50_beside, p99_beside, bytes / 1'000'000);
