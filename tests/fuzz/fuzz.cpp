@@ -121,6 +121,10 @@ void run(std::string_view input, std::string path) {
   for (const Reader& reader : kReaders)
     if (target.name == reader.name) return reader.read(path);
   if (target.task == detail::kToml.name && !detail::precheck_toml(input, path)) return;
+  if (target.kind != detail::FileKind::unknown) {  // the main program asks for no other
+    const Result<detail::FileKind> kind = detail::identify(path);
+    if (!kind || *kind != target.kind) return;
+  }
   detail::WireWriter wire;
   wire(path);
   const std::string answer = fuzzer->table.answer(target.task, wire.bytes + fuzz::arguments_of(target, input));
