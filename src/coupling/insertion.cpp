@@ -22,10 +22,12 @@ namespace stylet {
 namespace {
 /// Largest number of sub-steps in a step. Raised, faster motions are followed and the longest step takes longer.
 constexpr int kMaxSubSteps = 64;
-/// A sub-step in which the tip cuts and no balance is found is repeated in this many parts, each with its part of the
-/// base's motion. Raised, a tip that snaps through a surface and a needle near its buckling load are followed more
-/// reliably, and such a step takes longer.
+/// A sub-step without a balance is repeated in this many parts, each with its part of the base's motion, and so is each
+/// part. Raised, a needle that snaps is followed in fewer rounds, and more parts are taken than are needed.
 constexpr int kParts = 4;
+/// How often a sub-step is divided. With the staggered solver, whose balances take long, only once. Raised, balances
+/// are found for shorter parts, and a step without any takes longer.
+constexpr int kMostLevels = 3;
 /// [mm] Distance of a bent shaft from its axis that is rarely exceeded. Raised, a needle that is rolled takes more
 /// sub-steps.
 constexpr double kBent_mm = 10.0;
@@ -92,7 +94,8 @@ struct Insertion::Parts {
   /// @return false where the needle stays in the air
   bool enter(Step& step);
   bool find_balance(double h, bool may_give_up, Step& step);
-  bool move_on(const Pose& from, const Pose& to, double h, bool may_give_up, Step& step);
+  bool move_on(const Pose& from, const Pose& to, double h, int level, Step& step);
+  void move_in_parts(const Pose& from, const Pose& to, double h, int level, Step& step);
   void finish_insertion(Step& step);
   void settle_in_air(Step& step);
   void summarise(Step& step) const;
@@ -121,11 +124,14 @@ struct Insertion::Parts {
   std::unique_ptr<Predictor> predictor;
   std::unique_ptr<BalanceSolver> balance;
   RoomWatch room;
+  int first_level = 0;    ///< parts of this level are tried first in the next sub-step; 0: all of it
+  int deepest_level = 0;  ///< the deepest level of this sub-step
 };
 
 namespace {
 /// Pose of the base after `part` of `parts` equal parts of a motion; after the last part it is `to`, bit for bit.
 Pose between(const Pose& from, const Pose& to, int part, int parts) {
+  if (part == 0) return from;
   if (part == parts) return to;
   const double fraction = static_cast<double>(part) / parts;
   return {.origin = from.origin + fraction * (to.origin - from.origin),
@@ -318,15 +324,16 @@ bool Insertion::Parts::enter(Step& step) {
 }
 
 /// Finds the balance of a sub-step, and lets the track grow by its cut.
-/// @return false where there is no balance, the tip cuts and the sub-step may be given up; everything is then restored
-/// to the start of the sub-step
+/// @return false where there is no balance and the sub-step may be given up; everything but a surface that broke is
+/// then restored to the start of the sub-step
 bool Insertion::Parts::find_balance(double h, bool may_give_up, Step& step) {
   Effort effort(1 + static_cast<int>(held->shaft.count()), held->shaft.others() > 0);
   TipContact& tip = held->path.tip;
   const unsigned flags_before = std::exchange(step.flags, 0u);
+  const bool on_bone = tip.is_on_bone();
   const bool steady = balance->solve(h, effort, step);
-  const bool found = (step.flags & Step::not_converged) == 0;
-  if (!found && may_give_up && tip.cuts()) {
+  const bool found = (step.flags & (Step::not_converged | Step::contact_cycling)) == 0;
+  if (!found && may_give_up) {
     predictor->go_back(needles_in_balance(), tip, held->shaft.all());
     predictor->interrupt();
     step.flags = flags_before;
@@ -335,25 +342,40 @@ bool Insertion::Parts::find_balance(double h, bool may_give_up, Step& step) {
   const double cut = tip.touches() ? tip.cut.advance() : 0.0;
   tip.cut_mm_per_s = cut / h;
   held->path.commit(step);
-  held->damping.end(found);
+  held->damping.end(h, on_bone, found);
   step.flags |= flags_before;
   predictor->end(cut, steady, needles_in_balance(), tip, held->shaft.all());
   return true;
 }
 
-/// Carries out h seconds after the base has moved from one pose to another. @return as find_balance()
-bool Insertion::Parts::move_on(const Pose& from, const Pose& to, double h, bool may_give_up, Step& step) {
+/// Moves the base from one pose to another in h seconds. @param level how often the sub-step has been divided
+/// @return as find_balance()
+bool Insertion::Parts::move_on(const Pose& from, const Pose& to, double h, int level, Step& step) {
+  held->base = to;
+  held->needle->set_base(to);
   tissue.begin(h);
-  balance->damp(held->damping.begin(h, held->path.tip.is_on_bone()) / h);
+  balance->damp(held->damping.in_step(h, held->path.tip.is_on_bone(), level > 0) / h);
   predictor->begin(from, to, needles_in_balance(), held->path.tip, held->shaft.all());
   balance->base_moved(predictor->last_motion());
-  if (!find_balance(h, may_give_up, step)) return false;
+  const int most_levels = settings.solver == CouplingSettings::Solver::staggered ? 1 : kMostLevels;
+  if (!find_balance(h, level < most_levels, step)) return false;
   ContactStates::stick_where_slow(held->shaft.all(), h, settings.zero_band_mm_per_s);
   held->shaft.wake_and_drop(held->path.tracks.now, held->path.marks, held->path.tip.force, step);
   share_length();
   held->path.pass_open_end(forces(), step);
   tissue.end(forces(), held->path.tracks.now);
   return true;
+}
+
+/// The same, as a whole or, where that has no balance, in parts. After a sub-step that needed parts the next one begins
+/// with parts, one level less deep.
+void Insertion::Parts::move_in_parts(const Pose& from, const Pose& to, double h, int level, Step& step) {
+  if (level >= first_level && move_on(from, to, h, level, step)) {
+    deepest_level = std::max(deepest_level, level);
+    return;
+  }
+  for (int part = 1; part <= kParts; ++part)
+    move_in_parts(between(from, to, part - 1, kParts), between(from, to, part, kParts), h / kParts, level + 1, step);
 }
 
 void Insertion::Parts::sub_step(const Pose& pose, double h, Step& step) {
@@ -365,16 +387,10 @@ void Insertion::Parts::sub_step(const Pose& pose, double h, Step& step) {
   // Needles at rest have to be balanced even while the held needle is in the air: the tissue may have lost a needle, or
   // creep.
   if (held->in_air() && !enter(step) && !others_rest()) return;
-  const bool may_give_up = held->damping.balanced();
-  if (!move_on(before, pose, h, may_give_up, step)) {
-    Pose from = before;
-    for (int part = 1; part <= kParts; ++part) {
-      held->base = between(before, pose, part, kParts);
-      held->needle->set_base(held->base);
-      move_on(from, held->base, h / kParts, false, step);
-      from = held->base;
-    }
-  }
+  deepest_level = 0;
+  balance->begin();
+  move_in_parts(before, pose, h, 0, step);
+  first_level = std::max(0, deepest_level - 1);
   const bool drawn_out = (pose.origin - before.origin).dot(pose.rotation * Vec3::UnitZ()) < 0.0;
   if (!held->in_air() && held->shaft.empty() && held->path.has_left(drawn_out)) finish_insertion(step);
 }

@@ -7,66 +7,76 @@
 namespace stylet {
 
 namespace {
-/// Largest number of rounds of the search for the crossing. A larger number makes a search that fails cost more.
-constexpr int kMostRounds = 60;
-/// [mm] A point closer to the hole's plane than this counts as on it. A larger value makes the crossing less exact.
-constexpr double kOnPlane_mm = 1e-13;
-/// Smallest cosine between shaft and axis; a more oblique shaft counts as not running through the hole. A larger value
-/// takes a sharply bent needle out of the hole sooner.
-constexpr double kMostOblique = 0.1;
+/// Largest number of rounds of the search for the nearest point. A larger number makes a search that fails cost more.
+constexpr int kMostRounds = 30;
+/// [mm] The nearest point is found when it moves less than this. A larger value makes the force less exact.
+constexpr double kFound_mm = 1e-12;
+/// [mm] Longest step of the search. A larger value may take a shaft in a loop to another of its passages.
+constexpr double kLongestStep_mm = 5.0;
+/// [N] The edge of the hole is rounded: up to about this force its stiffness grows with the force. A larger value makes
+/// the hole narrower; a smaller one takes more iterations where the shaft touches the edge.
+constexpr double kRounded_N = 1.0;
 }  // namespace
 
 void GuideMeeting::place(const Vec3& centre, const Vec3& axis) {
   placed_ = true;
   centre_ = centre;
   axis_ = axis;
+  found_ = false;
 }
 
-/// Finds the arc length where the shaft crosses the plane, by Newton's method with bisection as a safeguard.
-bool GuideMeeting::find_crossing(const Needle& needle) {
+/// Finds the arc length at which the shaft is nearest to the centre, starting where it was before.
+bool GuideMeeting::find_nearest(const Needle& needle) {
+  const double length = needle.length();
   const auto before_plane = [&](double s) { return axis_.dot(centre_ - needle.point(s)); };
-  double low = 0.0;
-  double high = needle.length();
-  if (before_plane(low) < 0.0 || before_plane(high) > 0.0) return false;
-  double s = std::clamp(load_.s, low, high);
+  if (!found_) {
+    if (before_plane(0.0) < 0.0 || before_plane(length) > 0.0) return false;
+    load_.s = std::clamp((centre_ - needle.point(0.0)).norm(), 0.0, length);
+  }
+  double s = load_.s;
   for (int round = 0; round < kMostRounds; ++round) {
     const AxisPlace at = needle.place(s);
-    const double ahead = axis_.dot(centre_ - at.point);
-    if (std::abs(ahead) < kOnPlane_mm) break;
-    (ahead > 0.0 ? low : high) = s;
-    double next = s + ahead / axis_.dot(at.tangent);
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
-    if (next == s) break;
+    const double more = std::clamp(at.tangent.dot(centre_ - at.point), -kLongestStep_mm, kLongestStep_mm);
+    const double next = std::clamp(s + more, 0.0, length);
+    const bool there = std::abs(next - s) < kFound_mm;
     s = next;
+    if (there) break;
   }
   load_.s = s;
-  return true;
+  found_ = s > 0.0 && s < length;
+  return found_;
 }
 
 void GuideMeeting::meet(const Needle& needle) {
-  crosses_ = false;
-  beyond_ = 0.0;
+  push_ = 0.0;
+  energy_ = 0.0;
   offset_.setZero();
   load_.force.setZero();
   stiffness_.setZero();
-  if (!placed_ || !find_crossing(needle)) return;
+  if (!placed_ || !find_nearest(needle)) return;
   const auto [point, t] = needle.place(load_.s);
-  const double cosine = axis_.dot(t);
-  if (cosine < kMostOblique) return;
-  crosses_ = true;
-  const Vec3 away = point - centre_;
-  offset_ = away - axis_ * axis_.dot(away);
+  offset_ = point - centre_;
+  offset_ -= t * t.dot(offset_);
   const double d = offset_.norm();
-  beyond_ = std::max(0.0, d - hole_.clearance_mm);
+  const double k = hole_.stiffness_N_per_mm;
+  const double rounded = std::min(kRounded_N / k, hole_.clearance_mm);
+  const double beyond = d - hole_.clearance_mm;
+  double along = 0.0;  // stiffness along e
+  if (beyond > rounded || rounded == 0.0) {
+    push_ = k * beyond;
+    along = k;
+    energy_ = 0.5 * k * beyond * beyond + k * rounded * rounded / 6.0;
+  } else if (beyond > -rounded) {
+    const double in = beyond + rounded;
+    push_ = k * in * in / (4.0 * rounded);
+    along = k * in / (2.0 * rounded);
+    energy_ = k * in * in * in / (12.0 * rounded);
+  }
   if (!holds()) return;
-
   const Vec3 e = d > 0.0 ? Vec3(offset_ / d) : Vec3(Vec3::Zero());
-  const double across = d > 0.0 ? beyond_ / d : 1.0;  // stiffness perpendicular to e / stiffness along e
-  const Mat3 in_plane = Mat3::Identity() - axis_ * axis_.transpose();
-  const Mat3 H = hole_.stiffness_N_per_mm * (across * in_plane + (1.0 - across) * e * e.transpose());
-  const Mat3 P = Mat3::Identity() - t * axis_.transpose() / cosine;
-  load_.force = -hole_.stiffness_N_per_mm * beyond_ * (P.transpose() * e);
-  stiffness_ = P.transpose() * H * P;
+  const double across = d > 0.0 ? push_ / d : k;
+  load_.force = -push_ * e;
+  stiffness_ = across * (Mat3::Identity() - t * t.transpose()) + (along - across) * e * e.transpose();
 }
 
 }  // namespace stylet

@@ -16,12 +16,14 @@ constexpr double kBeside_mm = 1e-3;  ///< a point this far from a surface is saf
 
 void UnbrokenSurface::add(const Simulation& simulation) {
   for (const Event& event : simulation.new_events()) {
-    if (event.kind == EventKind::puncture || event.kind == EventKind::region_entered) furthest_.reset();
+    if (event.kind == EventKind::puncture || event.kind == EventKind::region_entered) forget();
   }
-  if (simulation.last_step().tip_state == TipState::cutting) furthest_.reset();
+  if (simulation.last_step().tip_state == TipState::cutting) forget();
   if (simulation.last_step().tip_state != TipState::pressing) return;
-  auto now = pressed_now(simulation);
-  if (now && (!furthest_ || now->past_mm > furthest_->past_mm)) furthest_ = std::move(now);
+  const auto now = pressed_now(simulation);
+  if (!now) return;
+  if (now->bow < kBuckled && (!buckled_ || now->hand_N > buckled_->hand_N)) buckled_ = now;
+  if (!furthest_ || now->past_mm > furthest_->past_mm) furthest_ = now;
 }
 
 std::optional<UnbrokenSurface::Pressed> UnbrokenSurface::pressed_now(const Simulation& simulation) {
@@ -49,7 +51,9 @@ std::optional<UnbrokenSurface::Pressed> UnbrokenSurface::pressed_now(const Simul
   Pressed pressed{.region = name_of(behind),
                   .past_mm = (step.tip_mm - at_rest).dot(axis),
                   .force_N = tip->force.dot(axis),
-                  .at_surface = before != behind};
+                  .at_surface = before != behind,
+                  .hand_N = step.force_axial_N,
+                  .bow = (step.tip_mm - step.base.origin).norm() / model.scenario().needle.length_mm};
   // A membrane holds only if it bears more than the tissue behind it takes to be cut.
   const double membrane_N = pressed.at_surface ? membrane_force(model.laws(), before, behind) : 0.0;
   pressed.by_cutting = laws_of(behind).cutting_N >= membrane_N;
@@ -60,9 +64,28 @@ std::optional<UnbrokenSurface::Pressed> UnbrokenSurface::pressed_now(const Simul
   return pressed;
 }
 
+void UnbrokenSurface::forget() {
+  furthest_.reset();
+  buckled_.reset();
+}
+
 std::optional<std::string> UnbrokenSurface::warning() const {
-  if (!furthest_ || furthest_->past_mm <= kFar_mm) return {};
-  const Pressed& p = *furthest_;
+  const bool pressed = furthest_ && furthest_->past_mm > kFar_mm;
+  if (!buckled_) return pressed ? std::optional(text_of(*furthest_)) : std::nullopt;
+  const std::string cure =
+      "Take a thicker or shorter needle, leave the stylet in it (needle.stylet = \"in\"), or hold it in a template "
+      "(template.guide = true) whose holes are nearer to the skin (template.distance_mm).";
+  if (pressed) {
+    return fmt::format("{} The needle bowed out under {:.2f} N: it buckled. {}", text_of(*furthest_), buckled_->hand_N,
+                       cure);
+  }
+  return fmt::format(
+      "The needle bowed out under {:.2f} N instead of {} the {}, for which {:.2f} N are needed: it buckled. {}",
+      buckled_->hand_N, buckled_->at_surface ? "breaking the surface of" : "cutting the tissue of", buckled_->region,
+      buckled_->needed_N, cure);
+}
+
+std::string UnbrokenSurface::text_of(const Pressed& p) {
   const std::string key = fmt::format("tissue.{}.{}", p.owner, p.by_cutting ? "cutting_N" : "puncture_N");
   if (!p.at_surface) {
     return fmt::format(

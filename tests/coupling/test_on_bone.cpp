@@ -100,14 +100,13 @@ TEST(OnBone, a_needle_bows_between_hand_and_bone_in_a_few_iterations_a_step) {
   EXPECT_LT(run.most, 15);
 }
 
-TEST(OnBone, a_needle_that_snaps_off_bone_is_balanced_in_nearly_every_step) {
-  // A short needle bears more than its tip does. Damping turns the snap into a motion, and a step without balance is
-  // followed by one with a balance.
+TEST(OnBone, a_needle_that_snaps_off_bone_is_balanced_in_every_step) {
+  // A short needle bears more than its tip does. Damping turns the snap into a motion.
   for (const double spacing : {1.4, 4.0}) {
     const PressedOnBone run(150.0, CouplingSettings{}.bone_damping_s, spacing);
-    EXPECT_LE(run.unbalanced, 1) << "where it strikes the bone";
+    EXPECT_EQ(run.unbalanced, 0);
     EXPECT_LT(run.iterations, 3 * run.steps);
-    EXPECT_LT(run.most, 20);
+    EXPECT_LT(run.most, 100) << "where it strikes the bone, the step is taken in parts";
   }
 }
 
@@ -124,7 +123,7 @@ TEST(OnBone, needles_of_every_model_snap_off_bone_into_the_same_shape) {
       return make_needle(model, section, default_needle_elements(model).value(), capacity).value();
     };
     PressedOnBone run(options);
-    EXPECT_LE(run.unbalanced, 2) << "where it strikes the bone";
+    EXPECT_EQ(run.unbalanced, 0);
     EXPECT_LT(run.peak(), 1.5 * beam.peak());
     run.wait(0.2);
     EXPECT_NEAR(run.forces.back(), beam.forces.back(), 0.01 * beam.forces.back());
@@ -159,7 +158,7 @@ TEST(OnBone, a_guide_in_front_of_the_skin_makes_a_needle_bear_more_on_bone) {
     };
     PressedOnBone guided(options);
     PressedOnBone alone(length);
-    EXPECT_LE(guided.unbalanced, 1);
+    EXPECT_EQ(guided.unbalanced, 0);
     EXPECT_GT(guided.report.guide_force_N.norm(), 0.1);
     EXPECT_GT(guided.forces.back(), 1.2 * alone.forces.back());
   }
@@ -181,10 +180,10 @@ TEST(OnBone, damping_on_bone_leaves_a_needle_at_rest_where_it_would_be_without) 
 }
 
 TEST(OnBone, a_balance_that_is_not_found_is_broken_off_and_leaves_no_force_beyond_those_that_were) {
-  // Without damping there is no balance on the way to the next shape.
+  // Without damping there is no balance on the way to the next shape, however short the parts of a step are.
   const PressedOnBone run(150.0, 0.0);
   EXPECT_TRUE(run.flags & Step::not_converged) << "the situation this is about has not come about";
-  EXPECT_LT(run.most, 25) << "it was not broken off";
+  EXPECT_LT(run.most, 85 * 30) << "it was not broken off";
   EXPECT_LE(run.grown, 2.0);
 }
 

@@ -33,7 +33,7 @@ class NeedleInAGuide : public test::NeedleModelTest {
   }
 };
 
-constexpr double kHard = 1e5;  // [N/mm] so hard that it stands for the rigid support of theory
+constexpr double kHard = 1e6;  // [N/mm] so hard that it stands for the rigid support of theory
 
 TEST_P(NeedleInAGuide, is_a_propped_cantilever_as_in_theory) {
   constexpr double P = 1e-3;

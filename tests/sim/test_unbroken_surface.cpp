@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "box_patient.hpp"
 
+#include <cmath>
+#include <numbers>
+
 namespace stylet {
 namespace {
 
@@ -54,6 +57,23 @@ TEST(UnbrokenSurface, the_force_that_holds_is_named_where_it_is_that_of_cutting)
 
 TEST(UnbrokenSurface, nothing_is_said_of_surfaces_that_break) {
   EXPECT_FALSE(test::contains(warnings_of(box_scenario()), "The tip pressed"));
+}
+
+/// Euler's load of a needle that the hand clamps and the skin holds: 2.05 π² E I / L².
+TEST(UnbrokenSurface, a_thin_needle_that_bows_out_on_the_skin_is_told_of_with_the_load_under_which_it_buckles) {
+  Scenario s = box_scenario();
+  s.needle.diameter_mm = 0.51;
+  s.needle.lumen_diameter_mm = 0.26;
+  s.insertions[0].depth_mm = 30.0;
+  const double inertia = std::numbers::pi / 64.0 * (std::pow(0.51, 4) - std::pow(0.26, 4));
+  const double euler_N = 2.05 * std::pow(std::numbers::pi / s.needle.length_mm, 2) * 200e3 * inertia;
+  const std::string said = warnings_of(s);
+  EXPECT_SAYS(said, "The needle bowed out under ");
+  EXPECT_SAYS(said, "instead of breaking the surface of the body");
+  const double told_N = std::stod(said.substr(said.find("bowed out under ") + 16));
+  EXPECT_GT(told_N, euler_N);
+  EXPECT_LT(told_N, 1.2 * euler_N);
+  EXPECT_FALSE(test::contains(said, "no balance"));
 }
 
 /// The distance in the warning is the distance of the tip past the rest position of the surface.

@@ -8,14 +8,12 @@
 
 namespace stylet {
 
-/// A needle of any model whose shaft runs through a hole. Let the shaft, with tangent t, cross the hole's plane at a
-/// distance d from the hole's axis n. It is free while d is less than the clearance c; beyond, the hole pushes back:
-///   W = ½ k (d − c)²,   force on the needle  −Pᵀ ∇W,   P = I − t nᵀ/(t·n).
-/// P maps a motion of the shaft to the motion of the crossing. The force is therefore perpendicular to the shaft: the
-/// hole is smooth, and the shaft slides through it without friction. The force is an additional load of the inner
-/// needle with Pᵀ ∇²W P as its spring, so to the coupling the needle is just stiffer. The tangent stiffness neglects
-/// that the force turns with the shaft. There is no force before the tip reaches the plane or after the base has passed
-/// it.
+/// A needle of any model whose shaft runs through a hole. The shaft is free while the distance d of its nearest point
+/// from the hole's centre is less than the clearance c; beyond, the hole pushes it back with the force k (d − c), and
+/// the edge between the two is rounded (docs/theory/needle.md). The force is perpendicular to the shaft: the hole is
+/// smooth, and the shaft slides through it without friction. The force is an additional load of the inner needle with a
+/// spring, so to the coupling the needle is just stiffer. The tangent stiffness neglects that the force turns with the
+/// shaft. There is no force before the tip reaches the hole or after the base has passed it.
 class GuidedNeedle final : public Needle {
  public:
   /// @param inner a needle built for at least load_capacity + 1 loads
@@ -23,7 +21,7 @@ class GuidedNeedle final : public Needle {
 
   void place_guide(const Vec3& hole, const Vec3& axis) override;
   [[nodiscard]] PointLoad guide_load() const override { return hole_.load(); }
-  /// [mm] Distance between the shaft and the hole's axis, in its plane; 0 where the shaft does not cross the plane.
+  /// [mm] Distance between the shaft and the hole's centre; 0 where the shaft is not in the hole.
   [[nodiscard]] double offset() const { return hole_.offset(); }
 
   [[nodiscard]] double length() const override { return inner_->length(); }

@@ -9,20 +9,25 @@
 namespace stylet {
 
 /// Follows one insertion and detects a surface (skin or capsule) or tissue that the tip pushes far ahead of itself
-/// without breaking or cutting it. Without a warning nobody would notice that the needle does not get behind it.
+/// without breaking or cutting it, and a needle that bows out instead. Without a warning nobody would notice that the
+/// needle does not get behind it.
 class UnbrokenSurface {
  public:
   /// [mm] Distance of the tip past the rest position of an unbroken surface, above which there is a warning.
   static constexpr double kFar_mm = 10.0;
+  /// Distance from base to tip, as a share of the needle's length, below which a needle counts as buckled: it then bows
+  /// out by an eighth of its length.
+  static constexpr double kBuckled = 0.96;
 
   /// Call after each step of the insertion. Allocates.
   void add(const Simulation& simulation);
 
-  /// A warning with distance, force and cure, if the surface in front of the tip has been pressed further than kFar_mm
-  /// and has not broken.
+  /// A warning with force and cure, if the needle has buckled on the surface in front of its tip, or has pressed it
+  /// further than kFar_mm, and the surface has not broken.
   [[nodiscard]] std::optional<std::string> warning() const;
 
  private:
+  void forget();
   struct Pressed {
     std::string region;
     double past_mm = 0.0;
@@ -31,10 +36,14 @@ class UnbrokenSurface {
     bool by_cutting = false;  ///< the tissue's cutting force holds the tip, not a membrane
     double needed_N = 0.0;    ///< force that would break the surface or cut the tissue
     std::string owner;        ///< region whose cutting or puncture force this is
+    double hand_N = 0.0;      ///< axial force of the hand
+    double bow = 1.0;         ///< distance from base to tip over the needle's length
   };
+  [[nodiscard]] static std::string text_of(const Pressed& pressed);
   [[nodiscard]] static std::optional<Pressed> pressed_now(const Simulation& simulation);
 
   std::optional<Pressed> furthest_;  ///< the furthest state of the surface in front of the tip
+  std::optional<Pressed> buckled_;   ///< the state with the largest force of the hand, of a needle that has buckled
 };
 
 }  // namespace stylet

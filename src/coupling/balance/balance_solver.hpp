@@ -24,7 +24,10 @@ class BalanceSolver {
  public:
   virtual ~BalanceSolver() = default;
 
-  /// Finds the balance after a sub-step of h seconds. Sets a flag in `step` where there is none.
+  /// Begins a sub-step, whose balance may be sought in several parts.
+  virtual void begin() {}
+
+  /// Finds the balance after a sub-step, or a part of one, of h seconds. Sets a flag in `step` where there is none.
   /// @return whether the balance was found in few iterations and the tip kept its state, so that the next sub-step can
   /// be predicted from this one
   virtual bool solve(double h, Effort& effort, Step& step) = 0;

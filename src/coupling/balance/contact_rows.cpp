@@ -63,12 +63,12 @@ double ContactRows::largest_load() const {
   return largest;
 }
 
-void ContactRows::soften(const Contacts& contacts, double h, bool foresees_cut) {
-  soften_tip(contacts, h, foresees_cut);
+void ContactRows::soften(const Contacts& contacts, double h) {
+  soften_tip(contacts, h);
   for (int c = 1; c < contacts.count(); ++c) soften_shaft(contacts.of_shaft(c), c, h);
 }
 
-void ContactRows::soften_tip(const Contacts& contacts, double h, bool foresees_cut) {
+void ContactRows::soften_tip(const Contacts& contacts, double h) {
   const TipContact& contact = contacts.tip;
   const Mat3& Q = frame.front();
   Yield& own = yield.front();
@@ -82,7 +82,7 @@ void ContactRows::soften_tip(const Contacts& contacts, double h, bool foresees_c
     const CuttingLaw law = contact.cutting_law(h);
     own.axial += law.slip_mm_per_N;
     by_state[2] = law.slip_mm_per_N * law.start_N + contact.cut.advance();
-    if (foresees_cut && contact.touches()) {
+    if (contact.touches()) {
       tip.cut_per_N = law.slip_mm_per_N;
       tip.cut_due = law.way(Q.col(2).dot(contact.force)) - contact.cut.advance();
     }

@@ -60,8 +60,7 @@ class ContactRows {
 
   /// Updates the yield D of each contact and its shift for a sub-step of h seconds, in the contact's present state.
   /// Also updates the friction terms `coulomb`, `slip` and `reach` of each shaft contact.
-  /// @param foresees_cut whether the equations include the change of compliance with the cut
-  void soften(const Contacts& contacts, double h, bool foresees_cut);
+  void soften(const Contacts& contacts, double h);
 
   /// [mm] LPS, the needle's point at a contact, extended straight beyond the needle's ends; as of take_places().
   [[nodiscard]] const Vec3& needle_at(int load) const { return needle_[static_cast<std::size_t>(load)]; }
@@ -71,7 +70,7 @@ class ContactRows {
   }
 
  private:
-  void soften_tip(const Contacts& contacts, double h, bool foresees_cut);
+  void soften_tip(const Contacts& contacts, double h);
   void soften_shaft(ShaftContact& contact, int load, double h);
 
   const CouplingSettings& settings_;

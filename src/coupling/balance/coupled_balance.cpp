@@ -64,16 +64,13 @@ constexpr double kMostMotion = 0.1;
 /// Raised, it is computed from one further back.
 constexpr double kLeastTurn_mm = 1.0;
 
-/// kSmoothCut: from this iteration on, the motion of the cut is damped, and the equations ignore that compliance
-/// changes with it. Where compliance changes fast with the cut (next to held tissue) the cut would alternate; the
-/// longer that lasts, the more the motion is damped.
-constexpr int kSmoothCut = 6;
+/// kMostHalves: how often the step of an iteration that led away is halved. Raised, shorter steps are tried.
+constexpr int kMostHalves = 8;
 /// kShortCut_mm [mm]: compliance may jump between two elements, so that no place of the cut balances: in the first
 /// element the cut would have to be longer, in the second shorter. If the cut enters an element that it has gone back
 /// out of in this balance, by a step shorter than this, it ends there for this sub-step. Raised, a cut may be longer by
 /// this.
 constexpr double kShortCut_mm = 0.05;
-double damping_of_cut(int iteration) { return iteration < kSmoothCut ? 1.0 : iteration < 2 * kSmoothCut ? 0.5 : 0.25; }
 }  // namespace
 
 /// The state of a solve between its iterations.
@@ -86,9 +83,10 @@ struct CoupledBalance::Progress {
   bool new_tangent = false;        ///< a tangent was made in this balance
   bool steady = true;              ///< result of solve()
 
-  /// Whether a new tangent is worth its cost. @param error over the tolerance @param iteration number of iterations so
+  /// Whether a new tangent is worth its cost. @param error that of_tangent() @param iteration number of iterations so
   /// far
   [[nodiscard]] bool needs_tangent(double error, int iteration) const {
+    if (error < 1.0) return false;
     const double rate = error / before;
     const auto done_after = [&](int more) { return rate < 1.0 && error * std::pow(rate, more) < 1.0; };
     if (!changed) return iteration == 1 ? !(rate < 1.0) : !done_after(kWorthATangent);
@@ -146,10 +144,12 @@ void CoupledBalance::gather() {
 double CoupledBalance::look(double h) {
   rows_.take_loads(parts_.contacts);
   rows_.take_places(parts_.contacts);
-  rows_.soften(parts_.contacts, h, foresees_cut_);
+  rows_.soften(parts_.contacts, h);
   gather();
-  const double of_contacts = larger_or_nan(error_of_tip(), error_of(1, parts_.contacts.count()));
-  return larger_or_nan(of_contacts, parts_.contacts.needle.residual(rows_.loads()) / moment()) / rows_.allowed();
+  const double of_rest =
+      larger_or_nan(error_of(1, parts_.contacts.count()), parts_.contacts.needle.residual(rows_.loads()) / moment());
+  error_of_rest_ = of_rest / rows_.allowed();
+  return larger_or_nan(error_of_tip() / rows_.allowed(), error_of_rest_);
 }
 
 /// [mm] The needle's out-of-balance moment over this length counts as a force.
@@ -232,7 +232,7 @@ bool CoupledBalance::pivot(double h, Effort& effort, Step& step, bool& changed) 
       }
       effort.spend(anew + effort.solution());
     }
-    rows_.soften(parts_.contacts, h, foresees_cut_);
+    rows_.soften(parts_.contacts, h);
     // The error of an old matrix may make states alternate.
     if (round == kAllAtOnce && !system_.factorise()) return false;
     if (!system_.solve(tip_rows())) return false;
@@ -289,17 +289,17 @@ void CoupledBalance::take_solution() {
 
 /// Moves the cut to its place in the present solution. @return whether the cut ended at a surface or between two
 /// elements, where the tip is now held
-bool CoupledBalance::cut_on(double h, int iteration) {
+bool CoupledBalance::cut_on(double h) {
   TipContact& tip = parts_.contacts.tip;
   if (!tip.cuts()) return false;
   const double proposed = std::max(0.0, tip.cutting_law(h).way(system_.lambda[2]));
   const double before = tip.cut.advance();
   const Index tet = tip.cut.at().tet;
-  march(before + damping_of_cut(iteration) * (proposed - before));
+  march(search_.next(before, proposed));
   const double way = tip.cut.advance() - before;
   const Index now = tip.cut.at().tet;
-  const bool ends = now != tet && now == left_tet_ && way > 0.0 && way < kShortCut_mm;
-  if (now != tet && way < 0.0) left_tet_ = tet;
+  const bool ends = now != tet && now == search_.left_tet && way > 0.0 && way < kShortCut_mm;
+  if (now != tet && way < 0.0) search_.left_tet = tet;
   if (!ends && !tip.cut.is_blocked()) return false;
   if (ends) tip.toggles = kMaxToggles + 1;  // the tip keeps this state for the sub-step
   tip.set_state(TipContact::State::stick);
@@ -307,9 +307,9 @@ bool CoupledBalance::cut_on(double h, int iteration) {
 }
 
 /// Whether an iterate without a balance is so far from the start of the sub-step that it is not kept.
-bool CoupledBalance::is_astray(double largest_at_start) const {
+bool CoupledBalance::is_astray() const {
   const Needle& needle = parts_.contacts.needle;
-  return !(parts_.contacts.largest_force() < kMostGrowth * largest_at_start &&
+  return !(parts_.contacts.largest_force() < kMostGrowth * largest_at_start_ &&
            (needle.point(needle.length()) - parts_.predictor.tip_start()).norm() < kMostMotion * needle.length());
 }
 
@@ -318,14 +318,40 @@ void CoupledBalance::give_way() {
   parts_.predictor.go_back(parts_.contacts.needle, parts_.contacts.tip, parts_.contacts.shaft.all());
 }
 
+/// The part of an error that the needle's tangent is to blame for, over the tolerance. While the tip cuts, the tip's
+/// error is that of the length of cut, which CutSearch finds with any tangent.
+double CoupledBalance::of_tangent(double error) const { return parts_.contacts.tip.cuts() ? error_of_rest_ : error; }
+
+/// Halves the step of an iteration that led away, until it leads nearer to the balance.
+/// @param error of the present iterate @param before error of the iterate before, both over the tolerance
+/// @return the error, over the tolerance
+double CoupledBalance::shorten(double h, double error, double before) {
+  const auto led_away = [&] { return of_tangent(error) > 1.0 && !(of_tangent(error) < before); };
+  if (!led_away()) return error;
+  for (int halves = 0; halves < kMostHalves && led_away(); ++halves) {
+    kept_.halve_step(parts_.contacts);
+    error = look(h);
+  }
+  search_.forget();
+  return error;
+}
+
+/// A balance is found: judges the tangent by its last iteration, and goes on with the next tangent if there is time.
+void CoupledBalance::watch_tangent(const Progress& progress, int iteration) {
+  const double before = progress.before;
+  const bool slow = error_of_rest_ > (progress.quiet && iteration > kManyIterations ? kSlowish : kSlow) * before;
+  if (slow && iteration > (progress.quiet ? kManyQuiet : kManyIterations)) tangent_.outdate();
+  if (iteration > 1 && error_of_rest_ > kWorn * before) tangent_.wear_out();
+  if (iteration <= (parts_.contacts.tip.cuts() ? kTimeLeft - 1 : kTimeLeft)) tangent_.prepare(parts_.contacts);
+}
+
 bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
   TipContact& tip = parts_.contacts.tip;
   Predictor& predictor = parts_.predictor;
   states_.begin(kMaxToggles);
   tip.begin(parts_.contacts.forces());
   if (const auto points = tangent_.take_prepared(parts_.contacts); !points.empty()) tissue_.take_points(points);
-  const double largest_at_start = parts_.contacts.largest_force();
-  left_tet_ = -1;
+  search_.begin();
   bool from_start = !predictor.expects_forces();
   predictor.go_on(parts_.contacts.needle, tip, parts_.contacts.shaft.all());
 
@@ -334,7 +360,6 @@ bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
   int before_break = 0;   // iterations up to the balance in which a surface broke
   for (int all = 0; all < kMaxNewton; ++all) {
     int iteration = all - before_break;
-    foresees_cut_ = iteration < kSmoothCut;
     double error = look(h);
     const bool found = iteration > 0 && !progress.changed && error < 1.0;
     if (found && tip.breaks_surface()) {
@@ -342,26 +367,22 @@ bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
           parts_.hand.when_tip_reached(tip.ahead.limit(), tip.history.start, parts_.contacts.own_forces());
       parts_.path.break_surface(hand_N, step);
       before_break = all;
+      search_.forget();
       iteration = 0;  // the search for the next balance starts here
-      foresees_cut_ = true;
       error = look(h);
     } else if (found) {
-      const double before = progress.before;
-      const bool slow = error > (progress.quiet && iteration > kManyIterations ? kSlowish : kSlow) * before;
-      if (slow && iteration > (progress.quiet ? kManyQuiet : kManyIterations)) tangent_.outdate();
-      if (iteration > 1 && error > kWorn * before) tangent_.wear_out();
-      if (iteration <= (tip.state() == TipContact::State::cut ? kTimeLeft - 1 : kTimeLeft))
-        tangent_.prepare(parts_.contacts);
+      watch_tangent(progress, iteration);
       // On bone, a balance that took long belongs to a snap and does not predict the next one. Elsewhere the matrix was
       // old; without the predictor the next sub-step would take as long again.
       return progress.steady && (iteration <= kManyIterations || !tip.is_on_bone());
     }
+    if (iteration > 0 && !progress.changed && !progress.old_matrix) error = shorten(h, error, progress.before);
     bool exact = progress.old_matrix_failed;
     progress.old_matrix_failed = false;
     if (iteration > 0 && !exact) {
-      exact = progress.needs_tangent(error, iteration);
+      exact = progress.needs_tangent(of_tangent(error), iteration);
       // The old tangent led away: restore the iterate before, and use a new tangent from there.
-      if (exact && progress.old_matrix && !progress.changed && !(error < progress.before)) {
+      if (exact && progress.old_matrix && !progress.changed && !(of_tangent(error) < progress.before)) {
         kept_.restore(parts_.contacts);
         error = look(h);
       }
@@ -371,9 +392,8 @@ bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
     progress.before = iteration == 0 ? std::max(error, kNear / parts_.settings.tolerance) : error;
     ++step.iterations;
     progress.old_matrix = !exact && tangent_.relax();
-    if (progress.old_matrix) {
-      kept_.keep(parts_.contacts);
-    } else {
+    kept_.keep(parts_.contacts);
+    if (!progress.old_matrix) {
       tangent_.linearise(parts_.contacts, progress.new_tangent && resting_needles_lag(), predictor.last_way() > 0.0,
                          effort);
       progress.new_tangent = true;
@@ -404,14 +424,17 @@ bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
     progress.steady = progress.steady && tip.toggles == 0;
 
     take_solution();
-    if (cut_on(h, iteration)) {
+    if (progress.changed) search_.forget();
+    if (cut_on(h)) {
       progress.changed = true;
       progress.steady = false;
     }
   }
+  // The last iteration may have led away from an iterate that was good enough.
+  if (!progress.changed && progress.before < kPoor && !(look(h) < kPoor)) kept_.restore(parts_.contacts);
   if (progress.changed || !(look(h) < kPoor)) {
     step.flags |= Step::not_converged;
-    if (is_astray(largest_at_start)) {
+    if (is_astray()) {
       give_way();
     } else {
       tip.take_back_cut();

@@ -4,6 +4,7 @@
 #include "coupling/balance/balance_solver.hpp"
 #include "coupling/balance/contact_rows.hpp"
 #include "coupling/balance/contact_states.hpp"
+#include "coupling/balance/cut_search.hpp"
 #include "coupling/balance/iterate.hpp"
 #include "coupling/balance/needle_tangent.hpp"
 #include "coupling/balance/tissue_block.hpp"
@@ -21,6 +22,7 @@ class CoupledBalance : public BalanceSolver {
 
   bool solve(double h, Effort& effort, Step& step) override;
   void damp(double ratio) override { tangent_.damp(ratio); }
+  void begin() override { largest_at_start_ = parts_.contacts.largest_force(); }
   void base_moved(double way_mm) override { tangent_.wear(way_mm); }
   void forget_tangent() override { tangent_.forget(); }
   void release() override { tangent_.release(); }
@@ -37,13 +39,16 @@ class CoupledBalance : public BalanceSolver {
   void change_and_tell(int load, Step& step);
   void take_solution();
   void slide(int load);
-  bool cut_on(double h, int iteration);
+  bool cut_on(double h);
   void march(double advance);
   [[nodiscard]] double error_of(int first, int end) const;
   [[nodiscard]] double error_of_tip() const;
   [[nodiscard]] bool resting_needles_lag() const;
   [[nodiscard]] double moment() const;
-  [[nodiscard]] bool is_astray(double largest_at_start) const;
+  [[nodiscard]] double of_tangent(double error) const;
+  double shorten(double h, double error, double before);
+  void watch_tangent(const Progress& progress, int iteration);
+  [[nodiscard]] bool is_astray() const;
   void give_way();
 
   BalanceParts parts_;
@@ -53,8 +58,9 @@ class CoupledBalance : public BalanceSolver {
   TissueBlock tissue_;
   NeedleTangent tangent_;
   Iterate kept_;
-  bool foresees_cut_ = true;  ///< whether the equations include the change of compliance with the cut
-  Index left_tet_ = -1;       ///< element that the cut has gone back out of in this balance
+  double largest_at_start_ = 0.0;  ///< [N] largest force of a contact at the start of the sub-step
+  double error_of_rest_ = 0.0;     ///< error of needle and shaft contacts in the last look(), over the tolerance
+  CutSearch search_;               ///< the length of cut
 };
 
 }  // namespace stylet

@@ -12,7 +12,7 @@ class Iterate {
  public:
   /// @param shape_size size of Needle::state() @param most_contacts largest number of shaft contacts
   Iterate(Eigen::Index shape_size, int most_contacts)
-      : shape_(VecX::Zero(shape_size)), shaft_(static_cast<std::size_t>(most_contacts)) {}
+      : shape_(VecX::Zero(shape_size)), work_(shape_), shaft_(static_cast<std::size_t>(most_contacts)) {}
 
   void keep(const Contacts& contacts) {
     shape_ = contacts.needle.state();
@@ -33,12 +33,26 @@ class Iterate {
     if (contacts.tip.cuts()) contacts.tip.cut.march(advance_);
   }
 
+  /// Moves the present iterate half of the way back to the kept one. No contact may have changed its state.
+  void halve_step(const Contacts& contacts) {
+    work_ = 0.5 * (shape_ + contacts.needle.state());
+    contacts.needle.set_state(work_);
+    contacts.tip.force = 0.5 * (tip_force_ + contacts.tip.force).eval();
+    for (std::size_t k = 0; k < contacts.shaft.count(); ++k) {
+      ShaftContact& contact = contacts.shaft.all()[k];
+      contact.force = 0.5 * (shaft_[k].force + contact.force).eval();
+      contact.s = 0.5 * (shaft_[k].s + contact.s);
+    }
+    if (contacts.tip.cuts()) contacts.tip.cut.march(0.5 * (advance_ + contacts.tip.cut.advance()));
+  }
+
  private:
   struct OfShaft {
     Vec3 force = Vec3::Zero();
     double s = 0.0;
   };
   VecX shape_;
+  VecX work_;  ///< a state between two iterates
   double advance_ = 0.0;
   Vec3 tip_force_ = Vec3::Zero();
   std::vector<OfShaft> shaft_;

@@ -42,8 +42,11 @@ void Predictor::begin(const Pose& before, const Pose& now, const Needle& needle,
   shape_start_ = needle.state();
   tip_start_ = needle.point(needle.length());
   tip.history.start = tip.force;
+
   for (ShaftContact& contact : shaft) {
     contact.s_start = contact.s;
+    contact.state_start = contact.state;
+    contact.fast_start = contact.fast;
     contact.history.start = contact.force;
   }
 
@@ -90,6 +93,8 @@ void Predictor::go_back(Needle& needle, TipContact& tip, std::span<ShaftContact>
   tip.force = tip.holds() ? tip.history.start : Vec3::Zero();
   for (ShaftContact& contact : shaft) {
     contact.s = contact.s_start;
+    contact.state = contact.state_start;
+    contact.fast = contact.fast_start;
     contact.force = contact.history.start;
   }
   tip.take_back_cut();

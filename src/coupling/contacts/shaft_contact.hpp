@@ -44,7 +44,9 @@ struct ShaftContact {
   bool presses_only = false;
 
   // Values for the predictor.
-  double s_start = 0.0;    ///< [mm] s at the start of the sub-step
+  double s_start = 0.0;              ///< [mm] s at the start of the sub-step
+  State state_start = State::stick;  ///< state and `fast` at the start of the sub-step
+  bool fast_start = false;
   double slid = 0.0;       ///< [mm] change of s in the last sub-step
   double slid_more = 0.0;  ///< [mm] the part of that change that was not in proportion to the previous change
   ForceHistory history;

@@ -65,7 +65,7 @@ StaggeredBalance::StaggeredBalance(const BalanceParts& parts)
 void StaggeredBalance::impose_needle_on_tissue(double h) {
   CondensedSystem& condensed = tissue_.system();
   const TipContact& tip = parts_.contacts.tip;
-  rows_.soften(parts_.contacts, h, false);
+  rows_.soften(parts_.contacts, h);
   for (int c = 0; c < parts_.contacts.count(); ++c) {
     const Mat3& Q = rows_.frame[static_cast<std::size_t>(c)];
     tissue_.turn(c, Q);

@@ -62,9 +62,11 @@ class Resistance {
   /// flat to the patient's surface does not break it, just as a tip that meets it flat does not enter.
   /// @param grazing_cos cosine of the angle between tangent and normal below which the tip lies flat
   [[nodiscard]] bool gives(double axial, const Vec3& t, double grazing_cos) const {
-    if (!surface_) return false;
-    const bool flat = !inwards_.isZero() && inwards_.dot(t) < grazing_cos;
-    return axial > limit_ && !flat;
+    return surface_ && axial > limit_ && !is_flat(t, grazing_cos);
+  }
+  /// Whether a tip with the unit tangent t lies flat to the patient's surface ahead. It then slides off.
+  [[nodiscard]] bool is_flat(const Vec3& t, double grazing_cos) const {
+    return surface_ && !inwards_.isZero() && inwards_.dot(t) < grazing_cos;
   }
 
  private:

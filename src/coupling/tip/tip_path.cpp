@@ -180,6 +180,8 @@ void TipPath::commit(Step& step) {
     }
   }
   if (!tip.touches()) return;
+  slide_off_where_flat();
+  if (!tip.touches()) return;
   if (tip.waits()) step.flags |= Step::compliance_missing;
   if (tip.refuses_own_law()) step.flags |= Step::unusable_law;
   switch (tip.state()) {
@@ -192,6 +194,19 @@ void TipPath::commit(Step& step) {
     case TipContact::State::stick:
       phase_ = tip.ahead.is_bone() ? TipState::bone : TipState::pressing;
       break;
+  }
+}
+
+/// A needle that bows out turns its tip on the patient's surface until it lies flat.
+void TipPath::slide_off_where_flat() {
+  if (tip.state() != TipContact::State::stick || !tip.ahead.is_flat(tangent(), settings_.grazing_cos)) return;
+  add_event(EventKind::grazed, tip.ahead.region());
+  tip.exit();
+  if (tracks.now.end_xi > 0.0) {  // it had come out of the tissue at the far side before
+    phase_ = TipState::exited;
+    tracks.now.open = true;
+    tracks.now.air_from_xi = tracks.now.end_xi;
+    air_tip_ = tip_now();
   }
 }
 
@@ -216,6 +231,7 @@ void TipPath::pass_open_end(const ContactForces& forces, Step& step) {
 /// is drawn out is in its track until it is out, however far the hand has moved sideways.
 bool TipPath::has_left(bool drawn_out) const {
   if (tip.holds()) return false;
+  if (!tip.touches() && tracks.now.end_xi == 0.0) return true;  // it has slid off
   const Vec3 t = tangent();
   const Vec3 from_entry = tip_now() - tracks.now.entry;
   const double deep = t.dot(from_entry);

@@ -77,6 +77,7 @@ class TipPath {
   bool meet_surface(const Vec3& from, const Vec3& to, Step& step);
   void touch_surface(const Crossing& crossing, const Vec3& x, EventKind kind);
   void cross_surface();
+  void slide_off_where_flat();
   /// Records an event if there is room for it.
   /// @param force_N axial force of the hand at the event; NaN where it has no meaning
   void add_event(EventKind kind, int region, double force_N = std::numeric_limits<double>::quiet_NaN());

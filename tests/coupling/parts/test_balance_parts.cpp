@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Parts of the balance: states of contacts, prediction, damping, and the kept compliance of the tissue.
 #include "coupling/balance/contact_states.hpp"
+#include "coupling/balance/cut_search.hpp"
 #include "coupling/balance/effort.hpp"
 #include "coupling/balance/iterate.hpp"
 #include "coupling/balance/needle_damping.hpp"
@@ -164,30 +165,52 @@ TEST(Predictor, goes_back_to_where_the_sub_step_began) {
 
 TEST(NeedleDamping, grows_with_the_time_on_bone_up_to_its_most) {
   NeedleDamping damping(3e-3);
-  EXPECT_EQ(damping.begin(1e-3, false), 0.0);
-  EXPECT_NEAR(damping.begin(1e-3, true), 1e-4, 1e-12);
-  double last = 0.0;
-  for (int k = 0; k < 100; ++k) last = damping.begin(1e-3, true);
-  EXPECT_EQ(last, 3e-3);
-  EXPECT_EQ(damping.begin(1e-3, false), 0.0);
+  EXPECT_EQ(damping.in_step(1e-3, false, false), 0.0);
+  EXPECT_NEAR(damping.in_step(1e-3, true, false), 1e-4, 1e-12);
+  for (int k = 0; k < 100; ++k) damping.end(1e-3, true, true);
+  EXPECT_EQ(damping.in_step(1e-3, true, false), 3e-3);
+  damping.end(1e-3, false, true);
+  EXPECT_NEAR(damping.in_step(1e-3, true, false), 1e-4, 1e-12) << "it had left the bone";
 }
 
-TEST(NeedleDamping, grows_where_no_balance_is_found_and_wears_off_again) {
+TEST(NeedleDamping, is_that_of_a_needle_that_snaps_in_parts_of_a_sub_step_only) {
   NeedleDamping damping(3e-3);
-  double before = 0.0;
-  for (int k = 0; k < 4; ++k) {
-    damping.end(false);
-    const double now = damping.begin(1e-3, false);
-    EXPECT_GT(now, before);
-    before = now;
+  EXPECT_EQ(damping.in_step(1e-3, false, true), 3e-3);
+  damping.end(1e-3, false, false);
+  EXPECT_EQ(damping.in_step(1e-3, false, false), 0.0) << "a step without a balance leaves no damping";
+}
+
+/// Searches for the length of cut where p(a) = a. @return number of proposals until |p(a) − a| < 1e-9; 60: not found
+template <class Proposal>
+int searches(Proposal&& p, double from = 0.0) {
+  CutSearch search;
+  double at = from;
+  for (int k = 0; k < 60; ++k) {
+    const double proposed = p(at);
+    if (std::abs(proposed - at) < 1e-9) return k;
+    at = search.next(at, proposed);
   }
-  for (int k = 0; k < 100 && before > 0.0; ++k) {
-    damping.end(true);
-    const double now = damping.begin(1e-3, false);
-    EXPECT_LT(now, before);
-    before = now;
+  return 60;
+}
+
+TEST(CutSearch, finds_the_length_though_proposals_run_back_and_forth_or_away) {
+  for (const double slope : {0.9, 0.5, 0.0, -0.55, -1.0, -3.0, -20.0})
+    EXPECT_LE(searches([slope](double a) { return 1.3 + slope * (a - 1.3); }), slope > 0.7 ? 40 : 3) << slope;
+  EXPECT_LE(searches([](double a) { return 2.0 / (1.0 + a * a * a); }), 10);
+  EXPECT_LE(searches([](double a) { return 1.0 / (0.02 + a); }), 14);
+}
+
+TEST(CutSearch, closes_in_on_a_jump_between_too_short_and_too_long) {
+  CutSearch search;
+  double at = 0.1;
+  double shortest = 0.0, longest = 10.0;
+  for (int k = 0; k < 40; ++k) {
+    (at < 0.7 ? shortest : longest) = at;
+    at = search.next(at, at < 0.7 ? at + 0.5 : at - 0.4);
+    EXPECT_GT(at, shortest);
+    EXPECT_LT(at, longest);
   }
-  EXPECT_EQ(before, 0.0);
+  EXPECT_LT(longest - shortest, 1e-4);
 }
 
 TEST(Effort, of_one_needle_allows_three_tangents_and_six_iterations_with_any_number_of_contacts) {
