@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Recordings that version 0.1.0 made (earlier/) open as they did then: in info, in pictures, and repeated."""
 import gzip
+import re
 import unittest
 from pathlib import Path
 
@@ -26,9 +27,15 @@ class EarlierRecordings(Serve):
             if at_rest:
                 self.assertIn(f"{at_rest} of them at rest", told)
 
-    def test_of_insertions_repeat_to_the_last_bit_and_can_be_seen(self):
+    def test_of_insertions_repeat_as_nearly_as_balances_are_found_and_can_be_seen(self):
+        # Another way to find a balance leaves the balance as it is, within its tolerance of 1e-8 in each sub-step.
         for name in ("insert", "live"):
-            self.assertIn("to the last bit", self.succeed("insert", f"{name}/run.h5", "-o", f"again-{name}").stdout)
+            told = self.succeed("insert", f"{name}/run.h5", "-o", f"again-{name}").stdout
+            differ = re.search(r"differ from the recording's, .* by at most (\S+) N", told)
+            if differ:
+                self.assertLess(float(differ[1]), 1e-6)
+            else:
+                self.assertIn("to the last bit", told)
             self.succeed("fluoro", f"{name}/run.h5", "-o", f"{name}.png")
 
     def test_of_insertions_are_replayed_in_the_live_page(self):
