@@ -93,8 +93,8 @@ struct CouplingSettings {
   /// η: the cutting force grows by η times the speed of cutting. It gives the jump of the tip after a puncture a finite
   /// speed.
   double tip_viscosity_Ns_per_mm = 2e-3;
-  /// Time constant of the needle's bending while its tip stands on bone. It gives a sudden slip of the tip a
-  /// finite speed.
+  /// Time constant of the needle's bending while its tip stands on bone, and in parts of a sub-step that has no balance
+  /// as a whole. It gives a sudden slip of the tip, or a snap of the needle, a finite speed.
   double bone_damping_s = 3e-3;
   double zero_band_mm_per_s = 0.005;  ///< a contact that slides more slowly than this sticks @cite Karnopp1985
   /// The tip slides off a surface where |axis · surface normal| is smaller than this: more than 80° from the normal.
