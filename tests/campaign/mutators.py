@@ -5,10 +5,12 @@ import copy
 import gzip
 import hashlib
 import io
+import itertools
 import json
 import logging
 import re
 import struct
+import sys
 import warnings
 
 import h5py
@@ -20,6 +22,8 @@ pydicom.config.settings.reading_validation_mode = pydicom.config.IGNORE
 pydicom.config.settings.writing_validation_mode = pydicom.config.IGNORE
 logging.getLogger("pydicom").setLevel(logging.CRITICAL + 1)
 warnings.filterwarnings("ignore", module="pydicom")
+# At Python's own limit pydicom would describe the data once more at each of the levels that it leaves.
+sys.setrecursionlimit(20_000)
 
 ESCAPE = "\x1b]0;title\x07\x1b[31mred\x7f\u009b2J\r\u202eder\u2028"
 NUMBERS = ("-1", "0", "1", "255", "65536", "2147483648", "4294967295", "99999999999999999999", "1e308", "-1e308",
@@ -156,6 +160,7 @@ def zipped(mutator):
 # DICOM
 
 LONG = (b"OB", b"OD", b"OF", b"OL", b"OW", b"SQ", b"UC", b"UN", b"UR", b"UT")
+MOST_DATASETS = 20_000
 OTHER_VRS = (b"SQ", b"UN", b"OB", b"DS", b"IS", b"US", b"FL", b"CS", b"UI", b"PN", b"??")
 
 
@@ -251,6 +256,8 @@ def dicom_tree(data, random):
         else:
             element._value = random.choice((*NUMBERS, ESCAPE, "x" * 3000, "0\\0\\0", "1\\2", "\\\\",
                                             "1.2.840.10008.1.2.1"))
+        if sum(1 for _ in itertools.islice(datasets(file), MOST_DATASETS + 1)) > MOST_DATASETS:
+            raise ValueError("items that were repeated within each other")
     out = io.BytesIO()
     file.save_as(out)
     return out.getvalue()
