@@ -14,9 +14,20 @@ std::string text(double value) {
   return out;
 }
 
-Result<> check_positive(double value, const std::string& where, const char* name, const char* cure) {
-  if (std::isfinite(value) && value > 0.0) return Ok{};
-  return input_error(where + ", " + name, "it is " + text(value) + ", expected a number above 0", cure);
+/// Above these no source is: doses of such a source would not be finite, or mean nothing. Published sources have a
+/// dose-rate constant of about 1 cGy/(h U), and functions of the order of 1.
+constexpr double kMostHalfLife_days = 1e6;
+constexpr double kMostRateConstant = 100.0;
+constexpr double kMostOfFunction = 1000.0;  // g, F and phi_an
+constexpr double kLongest_mm = 1000.0;
+
+bool is_possible(double value, double most) { return value > 0.0 && value <= most; }
+
+std::string expected(double most) { return ", expected a number above 0, at most " + text(most); }
+
+Result<> check_positive(double value, double most, const std::string& where, const char* name, const char* cure) {
+  if (is_possible(value, most)) return Ok{};
+  return input_error(where + ", " + name, "it is " + text(value) + expected(most), cure);
 }
 
 /// Checks radii or angles.
@@ -43,9 +54,9 @@ Result<> check_table(const std::vector<double>& radii, const std::vector<double>
                        "Give one value for each radius");
   }
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!std::isfinite(values[i]) || values[i] <= 0.0) {
+    if (!is_possible(values[i], kMostOfFunction)) {
       return input_error(where + ", " + name,
-                         "at " + text(radii[i]) + " mm it is " + text(values[i]) + ", expected a number above 0",
+                         "at " + text(radii[i]) + " mm it is " + text(values[i]) + expected(kMostOfFunction),
                          "Correct the value, or leave the radius out");
     }
   }
@@ -66,11 +77,11 @@ Result<> check_anisotropy(const SourceModel& source, const std::string& where) {
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = 0; j < m; ++j) {
       const double value = source.F(i, j);
-      if (std::isnan(value) ? j + 1 < m : std::isfinite(value) && value > 0.0) continue;
+      if (std::isnan(value) ? j + 1 < m : is_possible(value, kMostOfFunction)) continue;
       return input_error(where + ", F",
                          "at " + text(source.F_theta_deg[static_cast<std::size_t>(i)]) + " degrees and " +
                              text(source.F_r_mm[static_cast<std::size_t>(j)]) + " mm it is " + text(value) +
-                             ", expected a number above 0",
+                             expected(kMostOfFunction),
                          "Correct the value; only radii below the largest may lack one");
     }
   }
@@ -80,14 +91,17 @@ Result<> check_anisotropy(const SourceModel& source, const std::string& where) {
 }  // namespace
 
 Result<> check_source(const SourceModel& source, const std::string& where) {
-  if (auto good = check_positive(source.half_life_days, where, "half-life", "Give the half-life in days"); !good)
+  if (auto good =
+          check_positive(source.half_life_days, kMostHalfLife_days, where, "half-life", "Give the half-life in days");
+      !good)
     return good;
-  if (auto good = check_positive(source.dose_rate_constant, where, "dose-rate constant",
+  if (auto good = check_positive(source.dose_rate_constant, kMostRateConstant, where, "dose-rate constant",
                                  "Give the dose-rate constant in cGy/(h U)");
       !good)
     return good;
-  if (!std::isfinite(source.active_length_mm) || source.active_length_mm < 0.0) {
-    return input_error(where + ", active length", "it is " + text(source.active_length_mm) + " mm",
+  if (!(source.active_length_mm >= 0.0 && source.active_length_mm <= kLongest_mm)) {
+    return input_error(where + ", active length",
+                       "it is " + text(source.active_length_mm) + " mm, expected 0 … " + text(kLongest_mm),
                        "Give the length of the line source in mm, or 0 for a point source");
   }
   if (auto good = check_table(source.g_r_mm, source.g, where, "g"); !good) return good;

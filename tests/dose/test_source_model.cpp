@@ -72,7 +72,14 @@ TEST(SourceModel, that_cannot_be_used_is_refused_with_place_and_value) {
                          Bad{[](SourceModel& s) { s.F_r_mm.push_back(60.0); }, "11 × 6 values for 11 angles and 7"},
                          Bad{[](SourceModel& s) { s.F(2, 1) = 0.0; }, "F: at 10 degrees and 10 mm it is 0"},
                          Bad{[&](SourceModel& s) { s.F(0, 5) = nan; }, "F: at 0 degrees and 50 mm it is nan"},
-                         Bad{[](SourceModel& s) { s.phi.pop_back(); }, "phi_an: 5 values for 6 radii"}}) {
+                         Bad{[](SourceModel& s) { s.phi.pop_back(); }, "phi_an: 5 values for 6 radii"},
+                         // With such numbers doses overflow.
+                         Bad{[](SourceModel& s) { s.half_life_days = 1e308; }, "half-life: it is 1e+308"},
+                         Bad{[](SourceModel& s) { s.dose_rate_constant = 1e300; }, "constant: it is 1e+300"},
+                         Bad{[](SourceModel& s) { s.active_length_mm = 1e9; }, "active length: it is 1e+09 mm"},
+                         Bad{[](SourceModel& s) { s.g[3] = 1e308; }, "g: at 5 mm it is 1e+308"},
+                         Bad{[](SourceModel& s) { s.F(2, 1) = 1e308; }, "F: at 10 degrees and 10 mm it is 1e+308"},
+                         Bad{[](SourceModel& s) { s.phi[1] = 1e30; }, "phi_an: at"}}) {
     SourceModel source = find_source("i125_6711").value();
     bad.spoil(source);
     const auto made = Tg43::create(source, DoseFormalism::line2d);
