@@ -22,13 +22,23 @@ class LiveViewer:
         self.socket.sendall(f"GET /live?{at.query} HTTP/1.1\r\nHost: {at.netloc}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
                             f"Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n"
                             "Sec-WebSocket-Protocol: stylet-live-3\r\n\r\n".encode())
-        answer = self.socket.recv(1024).decode(errors="replace")
+        answer = self._answer()
         if " 101 " not in answer.split("\r\n", 1)[0]:
             self.socket.close()
             raise ConnectionError(answer)
         self.turn = threading.Lock()
         self.closed = threading.Event()
         threading.Thread(target=self._stay, daemon=True).start()
+
+    def _answer(self):
+        """The head of the server's answer, and nothing of the messages that may have come with it."""
+        answer = b""
+        while not answer.endswith(b"\r\n\r\n"):
+            part = self.socket.recv(1)
+            if not part:
+                break
+            answer += part
+        return answer.decode(errors="replace")
 
     def close(self):
         self.closed.set()
