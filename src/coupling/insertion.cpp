@@ -417,6 +417,7 @@ Step Insertion::Parts::step(const Pose& pose, double dt) {
   }
   for (int k = 1; k <= count; ++k) {
     const std::size_t before = tissue.compliance().remeshing().size();
+    held->path.begin_sub_step(static_cast<double>(k) / count);
     sub_step(between(from, pose, k, count), dt / count, step);
     // Withdrawal resets all changes; a sub-step with a withdrawal creates no contact.
     const std::size_t after = tissue.compliance().remeshing().size();
@@ -426,7 +427,8 @@ Step Insertion::Parts::step(const Pose& pose, double dt) {
   room.note_events(held->path.events().size());
   summarise(step);
   const bool explained = (step.flags & Step::compliance_missing) != 0;
-  if (held->path.is_outside() && step.contacts == 0 && !explained && held->path.in_tissue(step.tip_mm))
+  if (held->path.is_outside() && step.contacts == 0 && !explained && !held->path.lies_on_surface() &&
+      held->path.in_tissue(step.tip_mm))
     step.flags |= Step::no_contact_inside;
   return step;
 }

@@ -123,6 +123,7 @@ void Simulation::notice_turn(double advance_mm, bool in_tissue) {
 
 const Step& Simulation::step(const Pose& base, double dt) {
   const double force_before = step_.force_axial_N;
+  const double depth_before = step_.base_depth_mm;
   const Vec3 axis = base.rotation * Vec3::UnitZ();
   const double advance = (base.origin - step_.base.origin).dot(axis);
   const Step taken = insertion_.step(base, dt);
@@ -147,7 +148,12 @@ const Step& Simulation::step(const Pose& base, double dt) {
   notice_turn(advance, step_.contacts > 0 || step_.tip_state == TipState::in_track);
   for (const InsertionEvent& event : insertion_.events()) {
     // The force of a puncture is the force that broke the surface; at the end of the step it is lower.
+    const int before = event_count_;
     add_event(event.kind, std::isfinite(event.force_N) ? event.force_N : step_.force_axial_N, event.region);
+    if (event.passed == 1.0 || event_count_ == before) continue;
+    Event& within = events_[static_cast<std::size_t>(event_count_ - 1)];
+    within.time_s -= (1.0 - event.passed) * dt;
+    within.depth_mm = std::lerp(depth_before, step_.base_depth_mm, event.passed);
   }
   // Right after the turn the tissue springs back along the shaft, so contacts still slide inwards; then they stick and
   // the tissue moves out with the shaft. Only then does sliding outwards count as the start of slip.

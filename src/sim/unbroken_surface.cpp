@@ -17,6 +17,7 @@ constexpr double kBeside_mm = 1e-3;  ///< a point this far from a surface is saf
 void UnbrokenSurface::add(const Simulation& simulation) {
   for (const Event& event : simulation.new_events()) {
     if (event.kind == EventKind::puncture || event.kind == EventKind::region_entered) forget();
+    if (event.kind == EventKind::grazed && buckled_) slid_off_mm_ = event.depth_mm;
   }
   if (simulation.last_step().tip_state == TipState::cutting) forget();
   if (simulation.last_step().tip_state != TipState::pressing) return;
@@ -67,12 +68,21 @@ std::optional<UnbrokenSurface::Pressed> UnbrokenSurface::pressed_now(const Simul
 void UnbrokenSurface::forget() {
   furthest_.reset();
   buckled_.reset();
+  slid_off_mm_.reset();
 }
 
 std::optional<std::string> UnbrokenSurface::warning() const {
   const bool pressed = furthest_ && furthest_->past_mm > kFar_mm;
   if (!buckled_) return pressed ? std::optional(text_of(*furthest_)) : std::nullopt;
-  const std::string cure =
+  std::string cure;
+  if (slid_off_mm_) {
+    cure = fmt::format(
+        "At a base depth of {:.0f} mm its tip lay flat on the surface and slid off it: from there on the needle lies "
+        "on "
+        "the surface, which is not simulated, and has no force until it has been drawn out. ",
+        *slid_off_mm_);
+  }
+  cure +=
       "Take a thicker or shorter needle, leave the stylet in it (needle.stylet = \"in\"), or hold it in a template "
       "(template.guide = true) whose holes are nearer to the skin (template.distance_mm).";
   if (pressed) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "box_patient.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -74,6 +75,32 @@ TEST(UnbrokenSurface, a_thin_needle_that_bows_out_on_the_skin_is_told_of_with_th
   EXPECT_GT(told_N, euler_N);
   EXPECT_LT(told_N, 1.2 * euler_N);
   EXPECT_FALSE(test::contains(said, "no balance"));
+}
+
+/// Pushed on, it bows until its tip lies flat on the skin. From then on it has no force, and that is said once instead
+/// of in every step.
+TEST(UnbrokenSurface, a_needle_that_has_bowed_flat_slides_off_and_is_told_of) {
+  Scenario s = box_scenario();
+  s.needle.diameter_mm = 0.51;
+  s.needle.lumen_diameter_mm = 0.26;
+  s.insertions[0].depth_mm = 100.0;
+  test::Kept kept;
+  const auto done = run(compiled(s), kept);
+  ASSERT_TRUE(done.ok());
+  std::string said;
+  for (const std::string& warning : done->warnings) said += warning + '\n';
+  EXPECT_SAYS(said, "buckled");
+  EXPECT_SAYS(said, "its tip lay flat on the surface and slid off it");
+  const double slid_off_mm = std::stod(said.substr(said.find("At a base depth of ") + 19));
+  double most_N = 0.0;
+  for (const Step& step : kept.steps) {
+    EXPECT_EQ(step.flags, 0U) << step.time_s << " s";
+    const bool is_beyond = step.base_depth_mm > slid_off_mm + 1.0;
+    if (is_beyond) EXPECT_EQ(step.hand_force_N.norm(), 0.0) << step.base_depth_mm << " mm";
+    most_N = std::max(most_N, step.hand_force_N.norm());
+  }
+  EXPECT_GT(most_N, 0.1);
+  EXPECT_EQ(kept.steps.back().tip_state, TipState::air);
 }
 
 /// The distance in the warning is the distance of the tip past the rest position of the surface.

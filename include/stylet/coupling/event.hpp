@@ -27,6 +27,7 @@ struct InsertionEvent {
   int region = -1;  ///< number of a region of the mesh; −1: the event has none
   /// Axial force of the hand at the moment of a puncture; NaN for all other events.
   double force_N = std::numeric_limits<double>::quiet_NaN();
+  double passed = 1.0;  ///< share of the step that had passed: the end of the event's sub-step
 };
 
 }  // namespace stylet

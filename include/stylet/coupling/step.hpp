@@ -41,8 +41,9 @@ struct Step {
     too_fast = 1u << 4,         ///< the base moved further in one step than the sub-steps can follow
     invalid_input = 1u << 5,    ///< the pose is not finite, or dt ≤ 0: the step was not taken
     /// The needle is inside the tissue without a contact, its tip in the air or exited: it was placed there, went in
-    /// flat to the surface, slipped off the surface, or had passed through. No force resists it; it has to be drawn
-    /// out. Not set where compliance_missing reports the same.
+    /// flat to the surface, or had passed through. No force resists it; it has to be drawn out. Not set where
+    /// compliance_missing reports the same, nor for a needle that has buckled and slid off the patient's surface (event
+    /// `grazed`): it lies on the surface until it is drawn out.
     no_contact_inside = 1u << 6,
     /// A program's own law of cutting gave a number that is negative or not finite; the built-in law stood in for it.
     unusable_law = 1u << 7

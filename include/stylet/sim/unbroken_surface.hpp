@@ -42,8 +42,9 @@ class UnbrokenSurface {
   [[nodiscard]] static std::string text_of(const Pressed& pressed);
   [[nodiscard]] static std::optional<Pressed> pressed_now(const Simulation& simulation);
 
-  std::optional<Pressed> furthest_;  ///< the furthest state of the surface in front of the tip
-  std::optional<Pressed> buckled_;   ///< the state with the largest force of the hand, of a needle that has buckled
+  std::optional<Pressed> furthest_;    ///< the furthest state of the surface in front of the tip
+  std::optional<Pressed> buckled_;     ///< the state with the largest force of the hand, of a needle that has buckled
+  std::optional<double> slid_off_mm_;  ///< base depth at which the tip of a needle that has buckled slid off
 };
 
 }  // namespace stylet

@@ -25,12 +25,13 @@ TipPath::TipPath(const InsertionTissue& mesh, const CouplingSettings& settings, 
 
 void TipPath::add_event(EventKind kind, int region, double force_N) {
   if (event_count_ == event_.size()) return;
-  event_[event_count_++] = {kind, region, force_N};
+  event_[event_count_++] = {kind, region, force_N, passed_};
 }
 
 void TipPath::place_in_air(const Vec3& tip_now) {
   phase_ = TipState::air;
   air_tip_ = tip_now;
+  slid_off_ = false;
   forget_entry();
 }
 
@@ -53,6 +54,8 @@ std::optional<Vec3> TipPath::surface_behind(const Vec3& x) const {
 }
 
 bool TipPath::meet_surface(const Vec3& from, const Vec3& to, Step& step) {
+  slid_off_ = slid_off_ && (in_tissue(to) || mesh_.locator->first_entry(needle_.point(0.0), to));
+  if (slid_off_) return true;
   if (went_past_surface_) {
     if (mesh_.locator->find(to)) {
       step.flags |= Step::compliance_missing;
@@ -202,7 +205,8 @@ void TipPath::slide_off_where_flat() {
   if (tip.state() != TipContact::State::stick || !tip.ahead.is_flat(tangent(), settings_.grazing_cos)) return;
   add_event(EventKind::grazed, tip.ahead.region());
   tip.exit();
-  if (tracks.now.end_xi > 0.0) {  // it had come out of the tissue at the far side before
+  slid_off_ = tracks.now.end_xi == 0.0;
+  if (!slid_off_) {  // it had come out of the tissue at the far side before
     phase_ = TipState::exited;
     tracks.now.open = true;
     tracks.now.air_from_xi = tracks.now.end_xi;
@@ -258,7 +262,9 @@ void TipPath::finish() {
 /// A needle that left its track sideways meets the surface again where its shaft does, unless the tip is so far inside
 /// that this would be a blow: a bowed needle may swing that far when it slips off.
 void TipPath::come_out() {
+  const bool slid_off = slid_off_;
   place_in_air(surface_behind(tip_now()).value_or(tip_now()));
+  slid_off_ = slid_off;
   add_event(EventKind::withdrawn, -1);
 }
 

@@ -30,6 +30,8 @@ class TipPath {
   [[nodiscard]] std::span<const InsertionEvent> events() const { return {event_.data(), event_count_}; }
   [[nodiscard]] static constexpr std::size_t most_events() { return kMostEvents; }
   void forget_events() { event_count_ = 0; }
+  /// Says where in the step the next sub-step ends. @param passed 0 … 1
+  void begin_sub_step(double passed) { passed_ = passed; }
   [[nodiscard]] bool in_air() const { return phase_ == TipState::air; }
   /// Whether the tip is outside the tissue by its state.
   [[nodiscard]] bool is_outside() const { return phase_ == TipState::air || phase_ == TipState::exited; }
@@ -42,6 +44,9 @@ class TipPath {
   /// it at this depth would be a blow.
   /// @return false where the tip waits
   bool move_through_air(Step& step) { return meet_surface(air_tip_, tip_now(), step); }
+  /// Whether the tip has slid off the patient's surface, so that the needle lies on it and is in the tissue only as it
+  /// is drawn, straight. No force acts on it until it is drawn out.
+  [[nodiscard]] bool lies_on_surface() const { return slid_off_; }
   /// Sets the place of the tip in the air.
   void arrive(const Vec3& x) { air_tip_ = x; }
   [[nodiscard]] Vec3 tip_now() const { return needle_.point(needle_.length()); }
@@ -98,6 +103,8 @@ class TipPath {
   static constexpr std::size_t kMostEvents = 16;
   std::array<InsertionEvent, kMostEvents> event_;
   std::size_t event_count_ = 0;
+  double passed_ = 1.0;             ///< InsertionEvent::passed of new events
+  bool slid_off_ = false;           ///< lies_on_surface()
   bool went_past_surface_ = false;  ///< whether the tip is too far behind that surface and has to be drawn out first
 };
 
