@@ -19,6 +19,7 @@
 #include <cstring>
 #include <functional>
 #include <string>
+#include <utility>
 
 namespace stylet::test {
 
@@ -88,10 +89,14 @@ class LiveClient {
     command(R"({"do":"take"})");
     return until([&] { return status.value("you_hold", false); });
   }
-  /// Moves the needle with the hand to a depth [mm].
+  /// Moves the needle with the hand to a depth [mm]. As a page does, it says so again after its hand was stopped: a
+  /// client that was not read for a second counts as silent.
   bool go_to(float depth, float speed = 100.0F) {
     hand(depth, speed);
-    return until([&] { return std::abs(depth_mm - depth) < 0.1F; });
+    return until([&] {
+      if (std::exchange(went_on_, false)) hand(depth, speed);
+      return std::abs(depth_mm - depth) < 0.1F;
+    });
   }
   /// Waits for so much of the simulated time [s].
   bool passes(double seconds) {
@@ -140,7 +145,10 @@ class LiveClient {
       ++frames;
     } else if (kind == 3) {
       status = nlohmann::json::parse(bytes + 8, bytes + size);
-      if (status.value("hand_stopped", false) && answers) command(R"({"do":"go_on"})");
+      if (status.value("hand_stopped", false) && answers) {
+        command(R"({"do":"go_on"})");
+        went_on_ = true;
+      }
     } else if (kind == 4) {
       events.push_back(nlohmann::json::parse(bytes + 8, bytes + size));
     } else if (kind == 5) {
@@ -200,6 +208,7 @@ class LiveClient {
     std::memcpy(&value, bytes + place, sizeof value);
     return value;
   }
+  bool went_on_ = false;  // after the server had stopped its hand
   boost::asio::io_context io_;
   beast::websocket::stream<tcp::socket> socket_;
 };
