@@ -4,7 +4,8 @@
  *   load a saved model (stylet prepare)  ->  create a simulation  ->  step, step, step  ->  destroy both
  *
  * A model holds the data that take long to compute. It is constant, and simulations in several threads may share it. A
- * simulation is one needle in a model; only one thread at a time may use it. examples/rt_loop.c is a complete program.
+ * simulation is one patient with one needle or several, of which the hand moves one at a time; only one thread at a
+ * time may use it. examples/rt_loop.c and examples/three_needles.c are complete programs.
  *
  * Units are mm, N, s, rad. Coordinates are the patient's, DICOM LPS: +x left, +y posterior, +z superior. The needle
  * leaves its base along the base's local z axis.
@@ -133,8 +134,12 @@ typedef struct stylet_rt_options {
   uint32_t struct_size; /* sizeof(stylet_rt_options) */
   int32_t insertion;    /* planned insertion at whose start the needle is placed */
   uint32_t flags;       /* STYLET_RT_KEEP_DENORMALS, STYLET_RT_WORKER */
-  uint32_t reserved;    /* 0 */
+  uint32_t needles;     /* largest number of needles at the same time, up to STYLET_RT_MAX_NEEDLES; 0 = one */
 } stylet_rt_options;
+
+/* Largest number of needles in a simulation. Each takes memory for contacts of its own; the compliance among all of
+ * them grows as the square of their number. */
+#define STYLET_RT_MAX_NEEDLES 64
 
 /* Steps do not change the processor's treatment of denormal numbers. Without this flag, a step makes the processor
  * treat them as zero and restores the former mode at its end (x86, 64-bit ARM), because with denormal numbers a step
@@ -167,6 +172,26 @@ typedef struct stylet_rt_pose {
 /* Places the straight needle outside the patient at the start of a planned insertion. The tissue keeps the tracks that
  * have been cut; simulated time continues. @param insertion 0 ... insertions - 1 */
 STYLET_RT_API stylet_rt_status stylet_rt_sim_place(stylet_rt_sim* sim, int32_t insertion) STYLET_RT_NOEXCEPT;
+
+/* Lays the needle that the hand holds to rest and takes up another. A needle at rest keeps its hub where the hand left
+ * it (locked, as by a template), holds the tissue, bends and slips, and takes part in every step. All other functions
+ * that do not name a needle are about the one that the hand holds; the first one is needle 0. Allocates: call it
+ * between steps without a deadline.
+ * @param needle 0 ... needles - 1 of the options. Needles are taken up in the order of their numbers the first time
+ * @param insertion planned insertion at whose start a needle that has not been in the hand before is placed; a needle
+ *        that has been stays where it is, and may be moved on from there
+ * On failure the hand holds the same needle as before. STYLET_RT_FAILED: there is no room for another contact; raise
+ * coupling.contacts, or the model has an engine for one needle */
+STYLET_RT_API stylet_rt_status stylet_rt_sim_take_up(stylet_rt_sim* sim, int32_t needle, int32_t insertion, char* error,
+                                                     size_t error_size) STYLET_RT_NOEXCEPT;
+
+/* Number of the needle that the hand holds; -1 for null. [real time] */
+STYLET_RT_API int32_t stylet_rt_sim_held(const stylet_rt_sim* sim) STYLET_RT_NOEXCEPT;
+
+/* Force of the hand, or of the lock at the hub, on the base of any needle that has been taken up. [real time]
+ * @param force_N output (3) LPS */
+STYLET_RT_API stylet_rt_status stylet_rt_sim_hub_force(const stylet_rt_sim* sim, int32_t needle,
+                                                       double* force_N) STYLET_RT_NOEXCEPT;
 
 /* The planned pose of the base at `time_s` after the start of the insertion at which the needle was last placed; the
  * base is at rest before the start and after the end. [real time] */
@@ -260,6 +285,10 @@ STYLET_RT_API stylet_rt_status stylet_rt_sim_read_contacts(stylet_rt_sim* sim, s
 STYLET_RT_API stylet_rt_status stylet_rt_sim_read_needle(const stylet_rt_sim* sim, double* points_mm,
                                                          size_t points) STYLET_RT_NOEXCEPT;
 
+/* Reads the centreline of any needle that has been taken up, one at rest included. [real time; as read_needle] */
+STYLET_RT_API stylet_rt_status stylet_rt_sim_read_needle_of(const stylet_rt_sim* sim, int32_t needle, double* points_mm,
+                                                            size_t points) STYLET_RT_NOEXCEPT;
+
 /* Kinds of events. */
 enum {
   STYLET_RT_EVENT_SKIN_CONTACT = 0,     /* the tip touches the skin */
@@ -310,6 +339,50 @@ typedef struct stylet_rt_capacity {
  * @param which STYLET_RT_CAPACITY_CONTACTS, ... */
 STYLET_RT_API stylet_rt_status stylet_rt_sim_read_capacity(const stylet_rt_sim* sim, int32_t which,
                                                            stylet_rt_capacity* capacity) STYLET_RT_NOEXCEPT;
+
+/* ---- displaced surfaces ------------------------------------------------------------------------------------------ */
+
+/* The surfaces of a patient, for pictures: where the needles have moved the skin and the surfaces between regions. A
+ * display belongs to one model and serves any number of its simulations; only one thread at a time may use it, which
+ * need not be that of the loop. */
+typedef struct stylet_rt_display stylet_rt_display;
+
+/* Prepares a display: solves for columns of the tissue's response, which takes seconds and factorises the tissue if
+ * that has not been done. STYLET_RT_INPUT_ERROR: the model's engine keeps no compliance for it.
+ * @param display output, or null on failure. To be released with stylet_rt_display_destroy */
+STYLET_RT_API stylet_rt_status stylet_rt_display_create(const stylet_rt_model* model, stylet_rt_display** display,
+                                                        char* error, size_t error_size) STYLET_RT_NOEXCEPT;
+/* Releases a display. Null is allowed. */
+STYLET_RT_API void stylet_rt_display_destroy(stylet_rt_display* display) STYLET_RT_NOEXCEPT;
+
+/* A triangle. The corners are in the sense of a normal that points from inside to outside. 20 bytes. */
+typedef struct stylet_rt_triangle {
+  int32_t corner[3]; /* numbers of points, see stylet_rt_display_read_points */
+  int32_t inside;    /* region on the side from which the normal points, see stylet_rt_model_region */
+  int32_t outside;   /* region on the other side; -1 = outside of the patient */
+} stylet_rt_triangle;
+
+/* Reads the triangles, which never change. [real time]
+ * @param triangles output, with room for `room`; may be null with room = 0
+ * @param count output: number of triangles; those beyond `room` are not written
+ * @param points output: number of points that the corners number; may be null */
+STYLET_RT_API stylet_rt_status stylet_rt_display_read_triangles(const stylet_rt_display* display,
+                                                                stylet_rt_triangle* triangles, size_t room,
+                                                                size_t* count, size_t* points) STYLET_RT_NOEXCEPT;
+
+/* Takes the forces of a simulation's last step. [real time; some microseconds] The display must not be read meanwhile.
+ * STYLET_RT_BAD_ARGUMENT: the simulation is one of another model */
+STYLET_RT_API stylet_rt_status stylet_rt_display_take(stylet_rt_display* display,
+                                                      const stylet_rt_sim* sim) STYLET_RT_NOEXCEPT;
+
+/* Computes where the points lie under the forces that were taken last; before, where they lie at rest. Not in the loop:
+ * it takes about a millisecond for 3,000 nodes.
+ * @param points_mm output (points) x, y, z LPS
+ * @param points room, at least the number of points
+ * @param left_out_N output: sum of the forces that are not shown, because they act away from the planned paths; may be
+ *        null */
+STYLET_RT_API stylet_rt_status stylet_rt_display_read_points(stylet_rt_display* display, double* points_mm,
+                                                             size_t points, double* left_out_N) STYLET_RT_NOEXCEPT;
 
 #ifdef __cplusplus
 }

@@ -13,12 +13,15 @@ struct stylet_rt_model {
 };
 
 struct stylet_rt_sim {
-  stylet_rt_sim(std::shared_ptr<const stylet::Model> model_, std::uint32_t flags_);
+  stylet_rt_sim(std::shared_ptr<const stylet::Model> model_, std::uint32_t flags_, int needles);
+
+  /// Starts the thread of STYLET_RT_WORKER, if it is asked for.
+  void start_worker();
 
   std::shared_ptr<const stylet::Model> model;
   stylet::Simulation simulation;
-  std::uint32_t flags = 0;  ///< of stylet_rt_options
-  std::size_t insertion = 0;
+  std::uint32_t flags = 0;                           ///< of stylet_rt_options
+  std::vector<std::size_t> insertions;               ///< (needles) at whose start each needle was last placed
   std::vector<stylet::ContactState> contacts;        ///< scratch
   std::unique_ptr<stylet::ComplianceWorker> worker;  ///< only with STYLET_RT_WORKER
 };

@@ -69,9 +69,15 @@ stylet_rt_status stylet_rt_sim_read_contacts(stylet_rt_sim* sim, stylet_rt_conta
 }
 
 stylet_rt_status stylet_rt_sim_read_needle(const stylet_rt_sim* sim, double* points_mm, size_t points) noexcept {
+  return stylet_rt_sim_read_needle_of(sim, stylet_rt_sim_held(sim), points_mm, points);
+}
+
+stylet_rt_status stylet_rt_sim_read_needle_of(const stylet_rt_sim* sim, int32_t number, double* points_mm,
+                                              size_t points) noexcept {
   if (sim == nullptr || points_mm == nullptr || points < 2) return STYLET_RT_BAD_ARGUMENT;
+  if (number < 0 || number >= sim->simulation.insertion().needles()) return STYLET_RT_BAD_ARGUMENT;
   return guarded([&]() -> stylet_rt_status {
-    const stylet::Needle& needle = sim->simulation.insertion().needle();
+    const stylet::Needle& needle = sim->simulation.insertion().needle(number);
     const auto last = static_cast<double>(points - 1);
     for (std::size_t k = 0; k < points; ++k) {
       const stylet::Vec3 point = needle.point(needle.length() * static_cast<double>(k) / last);

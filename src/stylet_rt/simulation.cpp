@@ -74,10 +74,20 @@ void write(const stylet_rt_sim& sim, stylet_rt_result& out) noexcept {
   out.events = static_cast<int32_t>(sim.simulation.new_events().size());
 }
 
+/// The number of the planned insertion at whose start the held needle was last placed.
+std::size_t& insertion_of(stylet_rt_sim& sim) noexcept {
+  return sim.insertions[static_cast<std::size_t>(sim.simulation.insertion().held())];
+}
+
 void place(stylet_rt_sim& sim, std::size_t insertion) {
   const PlannedInsertion& plan = sim.model->insertions()[insertion];
   sim.simulation.place(plan);
-  sim.insertion = insertion;
+  insertion_of(sim) = insertion;
+}
+
+/// Whether the simulation has a needle, which has been taken up at some time.
+bool has(const stylet_rt_sim* sim, int32_t needle) noexcept {
+  return sim != nullptr && needle >= 0 && needle < sim->simulation.insertion().needles();
 }
 
 bool planned(const Model& model, int32_t insertion) noexcept {
@@ -89,11 +99,17 @@ bool planned(const Model& model, int32_t insertion) noexcept {
 
 using namespace stylet::rt;
 
-stylet_rt_sim::stylet_rt_sim(std::shared_ptr<const stylet::Model> model_, std::uint32_t flags_)
+stylet_rt_sim::stylet_rt_sim(std::shared_ptr<const stylet::Model> model_, std::uint32_t flags_, int needles)
     : model(std::move(model_)),
-      simulation(model),
+      simulation(model, needles),
       flags(flags_),
+      insertions(static_cast<std::size_t>(needles), 0),
       contacts(static_cast<std::size_t>(model->coupling().capacity) + 1) {}
+
+void stylet_rt_sim::start_worker() {
+  if ((flags & STYLET_RT_WORKER) != 0)
+    worker = std::make_unique<stylet::ComplianceWorker>(simulation.supply(), simulation.supply_settings());
+}
 
 extern "C" {
 
@@ -112,20 +128,19 @@ stylet_rt_status stylet_rt_sim_create(const stylet_rt_model* model, const stylet
     }
     chosen = *options;
   }
-  if ((chosen.flags & ~kKnownFlags) != 0 || chosen.reserved != 0)
+  if ((chosen.flags & ~kKnownFlags) != 0 || chosen.needles > STYLET_RT_MAX_NEEDLES)
     return text.bad_argument(
-        "stylet_rt_sim_create: options has unknown flags, or reserved is not 0. Set the structure to zero before you "
-        "fill it in");
+        "stylet_rt_sim_create: options has unknown flags, or more needles than STYLET_RT_MAX_NEEDLES. Set the "
+        "structure "
+        "to zero before you fill it in");
   if (!planned(*model->model, chosen.insertion))
     return text.bad_argument(
         "stylet_rt_sim_create: options.insertion is not the number of one of the model's insertions");
   return guarded(text, [&]() -> stylet_rt_status {
-    auto made = std::make_unique<stylet_rt_sim>(model->model, chosen.flags);
+    auto made =
+        std::make_unique<stylet_rt_sim>(model->model, chosen.flags, std::max(1, static_cast<int>(chosen.needles)));
     place(*made, static_cast<std::size_t>(chosen.insertion));
-    if ((chosen.flags & STYLET_RT_WORKER) != 0) {
-      made->worker =
-          std::make_unique<stylet::ComplianceWorker>(made->simulation.supply(), made->simulation.supply_settings());
-    }
+    made->start_worker();
     *sim = made.release();
     return STYLET_RT_OK;
   });
@@ -141,9 +156,43 @@ stylet_rt_status stylet_rt_sim_place(stylet_rt_sim* sim, int32_t insertion) noex
   });
 }
 
+stylet_rt_status stylet_rt_sim_take_up(stylet_rt_sim* sim, int32_t needle, int32_t insertion, char* error,
+                                       size_t error_size) noexcept {
+  ErrorText text(error, error_size);
+  if (sim == nullptr) return text.bad_argument("stylet_rt_sim_take_up: the simulation is null");
+  const int there = sim->simulation.insertion().needles();
+  if (needle < 0 || static_cast<std::size_t>(needle) >= sim->insertions.size())
+    return text.bad_argument(
+        "stylet_rt_sim_take_up: the simulation has no needle of this number. Raise stylet_rt_options.needles");
+  if (needle > there)
+    return text.bad_argument(
+        "stylet_rt_sim_take_up: a needle before this one has not been taken up. Take needles up in the order of their "
+        "numbers");
+  if (needle == there && !planned(*sim->model, insertion))
+    return text.bad_argument("stylet_rt_sim_take_up: insertion is not the number of one of the model's insertions");
+  return guarded(text, [&]() -> stylet_rt_status {
+    sim->worker.reset();  // it reads the compliance, which gets or loses a point
+    const auto taken = sim->simulation.take_up(needle);
+    if (taken.ok() && needle == there) place(*sim, static_cast<std::size_t>(insertion));
+    sim->start_worker();
+    return taken.ok() ? STYLET_RT_OK : text.of(taken.error());
+  });
+}
+
+int32_t stylet_rt_sim_held(const stylet_rt_sim* sim) noexcept {
+  return sim == nullptr ? -1 : sim->simulation.insertion().held();
+}
+
+stylet_rt_status stylet_rt_sim_hub_force(const stylet_rt_sim* sim, int32_t needle, double* force_N) noexcept {
+  if (!has(sim, needle) || force_N == nullptr) return STYLET_RT_BAD_ARGUMENT;
+  copy(sim->simulation.insertion().hand_force_on(needle), force_N);
+  return STYLET_RT_OK;
+}
+
 stylet_rt_status stylet_rt_sim_planned_base(const stylet_rt_sim* sim, double time_s, stylet_rt_pose* base) noexcept {
   if (sim == nullptr || base == nullptr || !std::isfinite(time_s)) return STYLET_RT_BAD_ARGUMENT;
-  const stylet::Pose pose = sim->model->insertions()[sim->insertion].motion.at(time_s);
+  const auto held = static_cast<std::size_t>(sim->simulation.insertion().held());
+  const stylet::Pose pose = sim->model->insertions()[sim->insertions[held]].motion.at(time_s);
   copy(pose.origin, base->position_mm);
   base->rotation[0] = pose.rotation.w();
   base->rotation[1] = pose.rotation.x();

@@ -27,8 +27,9 @@ int main(int argc, char** argv) {
   try {
     Scenario scenario = test::box_scenario();
     scenario.patient.source = "phantom";  // the only source that is not a path
-    scenario.insertions.push_back(scenario.insertions.front());
+    scenario.insertions.resize(3, scenario.insertions.front());
     scenario.insertions[1].entry_mm = {-5.0, 4.0, -20.0};
+    scenario.insertions[2].entry_mm = {4.0, 6.0, -20.0};
     taken(save_model(*test::compiled(scenario), folder / "box.stylet"));
 
     const auto model = taken(load_model(folder / "box.stylet"));

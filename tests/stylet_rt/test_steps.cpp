@@ -1,22 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tests simulations of one model that are stepped through the C interface from several threads.
+#include "handle.hpp"
 #include "sim/box_patient.hpp"
-#include "stylet_rt/handles.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <thread>
 
 using namespace stylet;
+using namespace stylet::test;
 
 namespace {
-
-struct Free {
-  void operator()(stylet_rt_model* model) const { stylet_rt_model_destroy(model); }
-  void operator()(stylet_rt_sim* sim) const { stylet_rt_sim_destroy(sim); }
-};
-using ModelHandle = std::unique_ptr<stylet_rt_model, Free>;
-using SimHandle = std::unique_ptr<stylet_rt_sim, Free>;
 
 /// A model of the box patient. @param corridor_mm 0 = the scenario's default
 ModelHandle box(double corridor_mm = 0.0) {

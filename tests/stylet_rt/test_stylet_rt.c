@@ -310,7 +310,7 @@ static int arguments_that_make_no_sense_are_statuses(void) {
   CHECK(stylet_rt_model_read_info(NULL, &info) == STYLET_RT_BAD_ARGUMENT);
   CHECK(stylet_rt_model_read_info(model, NULL) == STYLET_RT_BAD_ARGUMENT);
   CHECK(stylet_rt_model_read_info(model, &info) == STYLET_RT_OK);
-  CHECK(info.insertions == 2 && info.regions == 3 && info.nodes == 343);
+  CHECK(info.insertions == 3 && info.regions == 3 && info.nodes == 343);
   CHECK(stylet_rt_model_region(NULL, 0) == NULL);
   CHECK(stylet_rt_model_region(model, -1) == NULL);
   CHECK(stylet_rt_model_region(model, 3) == NULL);
@@ -318,8 +318,8 @@ static int arguments_that_make_no_sense_are_statuses(void) {
   CHECK(stylet_rt_model_insertion(NULL, 0, &plan) == STYLET_RT_BAD_ARGUMENT);
   CHECK(stylet_rt_model_insertion(model, 0, NULL) == STYLET_RT_BAD_ARGUMENT);
   CHECK(stylet_rt_model_insertion(model, -1, &plan) == STYLET_RT_BAD_ARGUMENT);
-  CHECK(stylet_rt_model_insertion(model, 2, &plan) == STYLET_RT_BAD_ARGUMENT);
-  CHECK(stylet_rt_model_insertion_name(model, 2) == NULL);
+  CHECK(stylet_rt_model_insertion(model, 3, &plan) == STYLET_RT_BAD_ARGUMENT);
+  CHECK(stylet_rt_model_insertion_name(model, 3) == NULL);
   CHECK(strlen(stylet_rt_model_insertion_name(model, 1)) > 0);
 
   memset(&options, 0, sizeof options);
@@ -327,7 +327,7 @@ static int arguments_that_make_no_sense_are_statuses(void) {
   CHECK(stylet_rt_sim_create(NULL, &options, &none, error, sizeof error) == STYLET_RT_BAD_ARGUMENT);
   CHECK(none == NULL);
   CHECK(stylet_rt_sim_create(model, &options, NULL, error, sizeof error) == STYLET_RT_BAD_ARGUMENT);
-  options.insertion = 2;
+  options.insertion = 3;
   CHECK(stylet_rt_sim_create(model, &options, &none, error, sizeof error) == STYLET_RT_BAD_ARGUMENT);
   CHECK(strstr(error, "insertion") != NULL);
   options.insertion = -1;
@@ -346,7 +346,7 @@ static int arguments_that_make_no_sense_are_statuses(void) {
   stylet_rt_sim_destroy(NULL);
 
   CHECK(stylet_rt_sim_place(NULL, 0) == STYLET_RT_BAD_ARGUMENT);
-  CHECK(stylet_rt_sim_place(sim, 2) == STYLET_RT_BAD_ARGUMENT);
+  CHECK(stylet_rt_sim_place(sim, 3) == STYLET_RT_BAD_ARGUMENT);
   CHECK(stylet_rt_sim_planned_base(NULL, 0.0, &pose) == STYLET_RT_BAD_ARGUMENT);
   CHECK(stylet_rt_sim_planned_base(sim, 0.0, NULL) == STYLET_RT_BAD_ARGUMENT);
   CHECK(stylet_rt_sim_planned_base(sim, NAN, &pose) == STYLET_RT_BAD_ARGUMENT);
