@@ -24,6 +24,7 @@ std::vector<RowSpec> collect() {
                            closed_loop_rows(),
                            insertion_over_meshes_rows(),
                            step_and_tolerance_rows(),
+                           odd_path_rows(),
                            other_software_rows(),
                            large_motion_rows(),
                            published_force_rows(),

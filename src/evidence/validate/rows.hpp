@@ -24,6 +24,7 @@ std::vector<RowSpec> insertion_law_rows();
 std::vector<RowSpec> closed_loop_rows();
 std::vector<RowSpec> step_and_tolerance_rows();
 std::vector<RowSpec> insertion_over_meshes_rows();
+std::vector<RowSpec> odd_path_rows();
 std::vector<RowSpec> other_software_rows();
 std::vector<RowSpec> published_force_rows();
 std::vector<RowSpec> liver_curve_rows();
