@@ -4,7 +4,7 @@
 # Words of libraries that read files and of the C++ runtime.
 FOREIGN = ("json.exception", "[json", "parse_error", "type_error", "while parsing", "saw '", "H5", "unable to",
            "HDF5 gave", "vtk", ".cxx", "ERROR:", "No data to", "Error reading", "std::", "bad_alloc", "basic_string",
-           "what()", "terminate", "core dumped", "Segmentation", "Aborted", "last words", "Dcm", "OFCondition",
+           "what()", "terminate", "core dumped", "Segmentation fault", "Aborted", "last words", "Dcm", "OFCondition",
            "escaped_list", "boost", "exception", "error_code", "invalid escape", "Invalid stream", "I/O suspension")
 
 

@@ -10,7 +10,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
+#include <ranges>
+#include <span>
+#include <type_traits>
 
 namespace stylet {
 namespace fs = std::filesystem;
@@ -28,6 +32,16 @@ struct NotAModel : std::runtime_error {
 
 void demand(bool condition, const std::string& what) {
   if (!condition) throw NotAModel(what);
+}
+
+/// Lengths, compliances and coefficients are far below this. A larger number, or one that is none, would show as a step
+/// without a balance or as a picture that cannot be written.
+constexpr double kLargest = 1e30;
+
+/// @param name of the array that has the numbers
+void demand_possible(std::span<const double> values, const std::string& name) {
+  const bool possible = std::ranges::all_of(values, [](double x) { return std::abs(x) <= kLargest; });
+  demand(possible, name + ": a number that no model has");
 }
 
 /// Reads the arrays of a model file by their positions; none can be larger than the file. Throws NotAModel, NotSealed
@@ -65,6 +79,7 @@ class Reader {
     for (std::size_t k = 0; k < shape.size(); ++k) demand(shape[k] == 0 || place.shape[k] == shape[k], name);
     std::vector<Number> values(place.items);
     file_.read(place.at, place.items * sizeof(Number), values.data());
+    if constexpr (std::is_same_v<Number, double>) demand_possible(values, name);
     return values;
   }
 
@@ -97,7 +112,9 @@ class Reader {
     for (Eigen::Index column = 0; column < size; ++column) {
       if (column % kPanel == 0) report(progress, "loading", static_cast<double>(column) / static_cast<double>(size));
       const std::uint64_t bytes = static_cast<std::uint64_t>(size - column) * sizeof(double);
-      file_.read(at, bytes, matrix.data() + column * size + column);
+      double* const from = matrix.data() + column * size + column;
+      file_.read(at, bytes, from);
+      demand_possible(std::span(from, static_cast<std::size_t>(size - column)), name);
       at += bytes;
     }
     mirror_lower(matrix);

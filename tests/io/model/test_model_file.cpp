@@ -8,9 +8,13 @@
 #include "stylet/io/model_file.hpp"
 #include "stylet/sim/simulation.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <random>
 #include <thread>
 
@@ -247,6 +251,31 @@ TEST(SavedModel, made_to_deceive_is_refused_or_read_but_never_ends_the_program) 
     for (int flip = 0; flip < 3; ++flip) other[random() % other.size()] ^= static_cast<char>(1 << (random() % 8));
     (void)load(other, index);
   }
+}
+
+/// Otherwise the steps of a forged model would diverge, or a picture in the middle of a run could not be written.
+TEST(SavedModel, with_a_number_that_no_model_has_is_refused_in_each_array) {
+  const Folder folder;
+  save_small(folder / "whole.stylet");
+  const std::string whole = test::content_of(folder / "whole.stylet");
+  const detail::SealedFile sealed(folder / "whole.stylet", {});
+  const auto index = nlohmann::json::parse(sealed.index());
+  int arrays = 0;
+  for (const auto& [name, array] : index.at("arrays").items()) {
+    std::uint64_t items = 1;
+    for (const auto& extent : array.at("shape")) items *= extent.get<std::uint64_t>();
+    if (array.at("item_bytes") != sizeof(double) || items == 0) continue;
+    ++arrays;
+    for (const double number : {std::nan(""), 1e300, -HUGE_VAL}) {
+      std::string content = whole.substr(0, sealed.size());
+      std::memcpy(content.data() + array.at("at").get<std::uint64_t>() + items / 2 * sizeof number, &number,
+                  sizeof number);
+      test::write_file(folder / "made.stylet", content);
+      detail::SealedFile::seal(folder / "made.stylet", sealed.index());
+      EXPECT_SAYS(refusal(folder / "made.stylet"), "a number that no model has") << name;
+    }
+  }
+  EXPECT_GT(arrays, 3);
 }
 
 TEST(SavedModel, has_the_same_bytes_each_time) {
