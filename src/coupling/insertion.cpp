@@ -306,7 +306,7 @@ void Insertion::Parts::place(const Pose& pose) {
   held->needle->set_base(pose);
   settle_in_air(unused);
   held->path.place_in_air(held->path.tip_now());
-  held->path.forget_events();
+  held->path.events.forget();
 }
 
 /// Moves a needle in the air, and tests whether it meets the patient.
@@ -397,7 +397,7 @@ void Insertion::Parts::sub_step(const Pose& pose, double h, Step& step) {
 
 Step Insertion::Parts::step(const Pose& pose, double dt) {
   Step step;
-  held->path.forget_events();
+  held->path.events.forget();
   if (!pose.origin.allFinite() || !pose.rotation.coeffs().allFinite() || !(dt > 0.0) || !std::isfinite(dt)) {
     step.flags = Step::invalid_input;
     summarise(step);
@@ -417,14 +417,14 @@ Step Insertion::Parts::step(const Pose& pose, double dt) {
   }
   for (int k = 1; k <= count; ++k) {
     const std::size_t before = tissue.compliance().remeshing().size();
-    held->path.begin_sub_step(static_cast<double>(k) / count);
+    held->path.events.begin_sub_step(static_cast<double>(k) / count);
     sub_step(between(from, pose, k, count), dt / count, step);
     // Withdrawal resets all changes; a sub-step with a withdrawal creates no contact.
     const std::size_t after = tissue.compliance().remeshing().size();
     step.remeshings = after >= before ? step.remeshings + static_cast<int>(after - before) : 0;
   }
   room.note(held->shaft.own().size(), held->path.tracks.earlier().size());
-  room.note_events(held->path.events().size());
+  room.note_events(held->path.events.all().size());
   summarise(step);
   const bool explained = (step.flags & Step::compliance_missing) != 0;
   if (held->path.is_outside() && step.contacts == 0 && !explained && !held->path.lies_on_surface() &&
@@ -505,7 +505,7 @@ bool Insertion::in_tissue(int number) const { return !parts_->needles[static_cas
 void Insertion::place(const Pose& base) { parts_->place(base); }
 void Insertion::place_guide(const Vec3& hole, const Vec3& axis) { parts_->held->needle->place_guide(hole, axis); }
 Step Insertion::step(const Pose& base, double dt) { return parts_->step(base, dt); }
-std::span<const InsertionEvent> Insertion::events() const { return parts_->held->path.events(); }
+std::span<const InsertionEvent> Insertion::events() const { return parts_->held->path.events.all(); }
 
 void Insertion::prepare(double radius_mm) {
   Parts& p = *parts_;

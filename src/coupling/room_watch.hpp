@@ -16,7 +16,7 @@ class RoomWatch {
     uses_.contacts.room = settings.capacity;
     uses_.spare_nodes.room = settings.spare_nodes;
     uses_.tracks.room = Tracks::kRoom;
-    uses_.events.room = static_cast<int>(TipPath::most_events());
+    uses_.events.room = static_cast<int>(TipEvents::kMost);
   }
   void note(std::size_t contacts, std::size_t tracks) {
     uses_.contacts.note(static_cast<int>(contacts));

@@ -23,11 +23,6 @@ TipPath::TipPath(const InsertionTissue& mesh, const CouplingSettings& settings, 
       needle_(needle),
       tissue_(tissue) {}
 
-void TipPath::add_event(EventKind kind, int region, double force_N) {
-  if (event_count_ == event_.size()) return;
-  event_[event_count_++] = {kind, region, force_N, passed_};
-}
-
 void TipPath::place_in_air(const Vec3& tip_now) {
   phase_ = TipState::air;
   air_tip_ = tip_now;
@@ -71,7 +66,7 @@ bool TipPath::meet_surface(const Vec3& from, const Vec3& to, Step& step) {
   const Vec3 x = from + crossing->t * (to - from);
   const Vec3 inwards = -mesh_.locator->face_normal(crossing->tet, crossing->local);
   if (inwards.dot(tangent()) < settings_.grazing_cos) {
-    add_event(EventKind::grazed, region_of(mesh_, crossing->tet));
+    events.add(EventKind::grazed, region_of(mesh_, crossing->tet));
     return true;
   }
   went_past_surface_ = waited && (to - x).norm() > settings_.merge_mm;
@@ -91,7 +86,7 @@ void TipPath::touch_surface(const Crossing& crossing, const Vec3& x, EventKind k
   const Vec3 t = tangent();
   const MaterialPoint at{crossing.tet, mesh_.locator->weights(crossing.tet, x)};
   Track& track = tracks.now;
-  add_event(kind, region);
+  events.add(kind, region);
   tissue_.leave_behind(track, 1.0);
 
   bool joins = false;
@@ -118,7 +113,7 @@ void TipPath::touch_surface(const Crossing& crossing, const Vec3& x, EventKind k
     tip.ahead.be_outer_surface(crossing.tet, region, -mesh_.locator->face_normal(crossing.tet, crossing.local),
                                membrane, laws(region).cutting_N);
     phase_ = std::isinf(membrane) ? TipState::bone : TipState::pressing;
-    if (std::isinf(membrane)) add_event(EventKind::bone_contact, region);
+    if (std::isinf(membrane)) events.add(EventKind::bone_contact, region);
     track.end = x;
     track.end_at = at;
   }
@@ -129,7 +124,7 @@ void TipPath::break_surface(double hand_N, Step& step) {
   ++step.pivots;
   ++tip.toggles;
   tip.set_state(TipContact::State::cut);
-  add_event(EventKind::puncture, region_of(mesh_, tip.ahead.behind()), hand_N);
+  events.add(EventKind::puncture, region_of(mesh_, tip.ahead.behind()), hand_N);
   tip.ahead.pass(tip.ahead.behind());
   cross_surface();
 }
@@ -144,14 +139,14 @@ void TipPath::cross_surface() {
     tracks.now.air_from_xi = tracks.now.end_xi;
     tip.exit();
     air_tip_ = tip.cut.x();
-    add_event(EventKind::exited, before);
+    events.add(EventKind::exited, before);
     return;
   }
   const int region = region_of(mesh_, behind);
   tip.cut.enter(behind);
   tip.ahead.be_tissue(region, laws(region).cutting_N);
   tip.ask_own_law();
-  add_event(EventKind::region_entered, region);
+  events.add(EventKind::region_entered, region);
 }
 
 void TipPath::commit(Step& step) {
@@ -179,7 +174,7 @@ void TipPath::commit(Step& step) {
       tip.set_state(TipContact::State::cut);
     } else {
       tip.ahead.be_surface(behind, break_N);
-      if (tip.ahead.is_bone()) add_event(EventKind::bone_contact, to);
+      if (tip.ahead.is_bone()) events.add(EventKind::bone_contact, to);
     }
   }
   if (!tip.touches()) return;
@@ -203,7 +198,7 @@ void TipPath::commit(Step& step) {
 /// A needle that bows out turns its tip on the patient's surface until it lies flat.
 void TipPath::slide_off_where_flat() {
   if (tip.state() != TipContact::State::stick || !tip.ahead.is_flat(tangent(), settings_.grazing_cos)) return;
-  add_event(EventKind::grazed, tip.ahead.region());
+  events.add(EventKind::grazed, tip.ahead.region());
   tip.exit();
   slid_off_ = tracks.now.end_xi == 0.0;
   if (!slid_off_) {  // it had come out of the tissue at the far side before
@@ -223,10 +218,10 @@ void TipPath::pass_open_end(const ContactForces& forces, Step& step) {
   if (ahead > 0.0 && phase_ == TipState::exited) {
     phase_ = TipState::in_track;
     forget_entry();
-    add_event(EventKind::re_entered, region_of(mesh_, track.end_at.tet));
+    events.add(EventKind::re_entered, region_of(mesh_, track.end_at.tet));
   } else if (ahead <= 0.0 && phase_ == TipState::in_track) {
     phase_ = TipState::exited;
-    add_event(EventKind::exited, region_of(mesh_, track.end_at.tet));
+    events.add(EventKind::exited, region_of(mesh_, track.end_at.tet));
   }
   if (phase_ != TipState::exited || meet_surface(air_tip_, now, step)) air_tip_ = now;
 }
@@ -265,7 +260,7 @@ void TipPath::come_out() {
   const bool slid_off = slid_off_;
   place_in_air(surface_behind(tip_now()).value_or(tip_now()));
   slid_off_ = slid_off;
-  add_event(EventKind::withdrawn, -1);
+  events.add(EventKind::withdrawn, -1);
 }
 
 NeedleWhereabouts TipPath::whereabouts() const {

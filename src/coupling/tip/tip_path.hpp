@@ -3,13 +3,11 @@
 
 #include "coupling/contacts/marks.hpp"
 #include "coupling/tip/tip_contact.hpp"
+#include "coupling/tip/tip_events.hpp"
 #include "coupling/tip/tracks.hpp"
 #include "stylet/coupling/compliance_supply.hpp"
 
-#include <array>
-#include <limits>
 #include <optional>
-#include <span>
 
 namespace stylet {
 
@@ -24,14 +22,9 @@ class TipPath {
   TipContact tip;
   Tracks tracks;
   Marks marks;
+  TipEvents events;
 
   [[nodiscard]] TipState phase() const { return phase_; }
-  /// The events since the last forget_events().
-  [[nodiscard]] std::span<const InsertionEvent> events() const { return {event_.data(), event_count_}; }
-  [[nodiscard]] static constexpr std::size_t most_events() { return kMostEvents; }
-  void forget_events() { event_count_ = 0; }
-  /// Says where in the step the next sub-step ends. @param passed 0 … 1
-  void begin_sub_step(double passed) { passed_ = passed; }
   [[nodiscard]] bool in_air() const { return phase_ == TipState::air; }
   /// Whether the tip is outside the tissue by its state.
   [[nodiscard]] bool is_outside() const { return phase_ == TipState::air || phase_ == TipState::exited; }
@@ -83,9 +76,6 @@ class TipPath {
   void touch_surface(const Crossing& crossing, const Vec3& x, EventKind kind);
   void cross_surface();
   void slide_off_where_flat();
-  /// Records an event if there is room for it.
-  /// @param force_N axial force of the hand at the event; NaN where it has no meaning
-  void add_event(EventKind kind, int region, double force_N = std::numeric_limits<double>::quiet_NaN());
   [[nodiscard]] std::optional<Vec3> surface_behind(const Vec3& x) const;
   [[nodiscard]] const RegionLaws& laws(int region) const { return mesh_.laws[static_cast<std::size_t>(region)]; }
   [[nodiscard]] Vec3 tangent() const { return needle_.tangent(needle_.length()); }
@@ -100,11 +90,7 @@ class TipPath {
                                                     ///< is missing
   double entry_N_ = 0.0;                  ///< force at which the surface breaks that the tip touched from outside
   Vec3 entry_direction_ = Vec3::UnitZ();  ///< of the needle there, LPS
-  static constexpr std::size_t kMostEvents = 16;
-  std::array<InsertionEvent, kMostEvents> event_;
-  std::size_t event_count_ = 0;
-  double passed_ = 1.0;             ///< InsertionEvent::passed of new events
-  bool slid_off_ = false;           ///< lies_on_surface()
+  bool slid_off_ = false;                 ///< lies_on_surface()
   bool went_past_surface_ = false;  ///< whether the tip is too far behind that surface and has to be drawn out first
 };
 

@@ -12,7 +12,7 @@ using test::SimpleTissue;
 
 std::vector<EventKind> kinds(const TipPath& path) {
   std::vector<EventKind> result;
-  for (const InsertionEvent& event : path.events()) result.push_back(event.kind);
+  for (const InsertionEvent& event : path.events.all()) result.push_back(event.kind);
   return result;
 }
 
@@ -190,7 +190,7 @@ TEST_F(TipOnItsWay, breaks_the_skin_and_cuts_on_behind_it) {
   ASSERT_TRUE(path.tip.breaks_surface());
   path.break_surface(1.05, report);
   EXPECT_EQ(kinds(path), (std::vector{EventKind::skin_contact, EventKind::puncture, EventKind::region_entered}));
-  EXPECT_EQ(path.events()[1].force_N, 1.05);
+  EXPECT_EQ(path.events.all()[1].force_N, 1.05);
   EXPECT_EQ(path.tip.ahead.cutting(), 0.3);
   const double h = 1e-3, speed_mm_per_s = 20.0;
   EXPECT_NEAR(path.tip.cutting_law(h).force(speed_mm_per_s * h),
@@ -223,7 +223,7 @@ TEST_F(TipOnItsWay, goes_out_at_the_far_side_and_comes_back_into_its_track) {
   ASSERT_EQ(path.phase(), TipState::exited);
   EXPECT_TRUE(path.tracks.now.open);
   EXPECT_FALSE(path.tip.touches());
-  path.forget_events();
+  path.events.forget();
   block.put_tip(Vec3(1, 2, 39.0));
   path.pass_open_end({path.tip.force, {}}, report);
   EXPECT_EQ(path.phase(), TipState::in_track);
