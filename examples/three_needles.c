@@ -110,6 +110,10 @@ static int run(const stylet_rt_model* model, stylet_rt_sim* sim, stylet_rt_displ
     }
     stylet_rt_model_insertion(model, n, &plan);
     flagged = put_in(sim, plan.depth_mm, plan.duration_s);
+    if (flagged < 0) {
+      status = failed("a step was refused");
+      break;
+    }
     stylet_rt_sim_hub_force(sim, n, hub_N);
     printf("needle %d (%s): %.2f N on the hand at %.1f mm, %ld steps flagged\n", n + 1,
            stylet_rt_model_insertion_name(model, n), length(hub_N), plan.depth_mm, flagged);

@@ -370,13 +370,13 @@ STYLET_RT_API stylet_rt_status stylet_rt_display_read_triangles(const stylet_rt_
                                                                 stylet_rt_triangle* triangles, size_t room,
                                                                 size_t* count, size_t* points) STYLET_RT_NOEXCEPT;
 
-/* Takes the forces of a simulation's last step. [real time; some microseconds] The display must not be read meanwhile.
+/* Takes the forces of a simulation's last step. [real time] The display must not be read meanwhile.
  * STYLET_RT_BAD_ARGUMENT: the simulation is one of another model */
 STYLET_RT_API stylet_rt_status stylet_rt_display_take(stylet_rt_display* display,
                                                       const stylet_rt_sim* sim) STYLET_RT_NOEXCEPT;
 
-/* Computes where the points lie under the forces that were taken last; before, where they lie at rest. Not in the loop:
- * it takes about a millisecond for 3,000 nodes.
+/* Computes where the points lie under the forces that were taken last; before, where they lie at rest. Its time grows
+ * with the number of points, and it may allocate: not in the loop.
  * @param points_mm output (points) x, y, z LPS
  * @param points room, at least the number of points
  * @param left_out_N output: sum of the forces that are not shown, because they act away from the planned paths; may be
