@@ -77,9 +77,8 @@ std::optional<std::string> UnbrokenSurface::warning() const {
   std::string cure;
   if (slid_off_mm_) {
     cure = fmt::format(
-        "At a base depth of {:.0f} mm its tip lay flat on the surface and slid off it: from there on the needle lies "
-        "on "
-        "the surface, which is not simulated, and has no force until it has been drawn out. ",
+        "At a base depth of {:.0f} mm its tip lay flat on the surface and slid off it: from there on the needle "
+        "lies on the surface, which is not simulated, and has no force until it has been drawn out. ",
         *slid_off_mm_);
   }
   cure +=

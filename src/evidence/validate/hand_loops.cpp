@@ -59,33 +59,32 @@ class Hand {
     return simulation_.insertion().tissue_energy() + simulation_.insertion().needle().energy();
   }
 
-  /// Takes a step. Its work is computed with the mean of force and torque before and after it, which is accurate to
-  /// second order in the step.
   void step(const Pose& next, double dt_s) {
     simulation_.prepare();
-    simulation_.step(next, dt_s);
-    const Step& report = simulation_.last_step();
-    const Eigen::AngleAxisd turn(next.rotation * base_.rotation.conjugate());
-    const double angle = std::remainder(turn.angle(), 2.0 * std::numbers::pi);
-    const double work = 0.5 * (force_ + report.hand_force_N).dot(next.origin - base_.origin) +
-                        0.5 * (torque_ + report.torque_Nmm).dot(angle * turn.axis());
+    const Step before = simulation_.last_step();
+    const Step& report = simulation_.step(next, dt_s);
+    const double work = work_of_hand(before, report);
     work_.net += work;
     work_.put_in += std::max(0.0, work);
     flags_ |= report.flags;
-    force_ = report.hand_force_N;
-    torque_ = report.torque_Nmm;
     base_ = next;
   }
 
   std::shared_ptr<const Model> model_;
   Simulation simulation_;
   Pose base_;
-  Vec3 force_ = Vec3::Zero(), torque_ = Vec3::Zero();
   HandWork work_;
   unsigned flags_ = 0;
 };
 
 }  // namespace
+
+double work_of_hand(const Step& before, const Step& after) {
+  const Eigen::AngleAxisd turn(after.base.rotation * before.base.rotation.conjugate());
+  const double angle = std::remainder(turn.angle(), 2.0 * std::numbers::pi);
+  return 0.5 * (before.hand_force_N + after.hand_force_N).dot(after.base.origin - before.base.origin) +
+         0.5 * (before.torque_Nmm + after.torque_Nmm).dot(angle * turn.axis());
+}
 
 HandLoop::HandLoop(unsigned number) {
   std::mt19937 random(number + 1);

@@ -5,6 +5,7 @@
 
 #include "stylet/core/result.hpp"
 #include "stylet/core/types.hpp"
+#include "stylet/coupling/step.hpp"
 #include "stylet/sim/model.hpp"
 
 #include <array>
@@ -12,6 +13,9 @@
 #include <vector>
 
 namespace stylet::validate {
+
+/// [N mm] Work of the hand between two steps, with the mean of force and torque, which is accurate to second order.
+double work_of_hand(const Step& before, const Step& after);
 
 /// A closed motion of the needle's base about a pose in six directions: push and pull, two sideways translations, two
 /// tilts, and roll. Each is a random sum of three harmonics that begins and ends at zero.

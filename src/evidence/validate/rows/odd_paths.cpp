@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Needles off the beaten track: every step must have a balance, and the time step must not decide what happens.
-#include "../patients.hpp"
+#include "../hand_loops.hpp"
 #include "../rows.hpp"
 #include "stylet/geom/tet_mesh.hpp"
 #include "stylet/io/label_image_io.hpp"
@@ -26,7 +26,7 @@ constexpr std::array kSteps_ms{0.25, 0.5, 1.0, 2.0, 5.0};
 constexpr double kLargestCompared_ms = 2.0;
 constexpr double kMostFlagged = 1e-4;  // of all steps
 constexpr double kSameDepth_mm = 0.5;  // of an event
-constexpr double kSameForce = 0.03;    // RMS of the axial force over its peak, and the peaks
+constexpr double kSameForce = 0.03;    // RMS of the axial force over its peak
 constexpr double kMostGained = 1e-3;   // of the work that the hand puts in
 constexpr double kAboveEuler = 1.2;
 constexpr double kApproach_mm = 3.0;
@@ -43,7 +43,6 @@ struct Path {
   std::string name;
   Vec3 through = Vec3::Zero();  ///< [mm] from the gland's centre, in half widths of the gland: a point of the line
   double tilt_deg = 0.0;        ///< towards anterior, in the sagittal plane
-  double depth = 1.0;           ///< of the way from the skin to the gland's far end
   bool beyond = false;          ///< goes on beyond the gland
   double outer_mm = 1.27, lumen_mm = 1.0;
   double speed_mm_per_s = kSpeed_mm_per_s;
@@ -203,15 +202,13 @@ Run run(const std::shared_ptr<const Model>& model, const OddMotion& motion, doub
   const auto every = std::max(1L, std::lround(kLargestCompared_ms / dt_ms));
   Run result{.dt_ms = dt_ms};
   Simulation simulation(model);
-  Pose before = motion.at(0.0);
-  simulation.place(before, plan.entry, plan.direction);
-  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+  simulation.place(motion.at(0.0), plan.entry, plan.direction);
+  Step before = simulation.last_step();
   bool was_flagged = false;
   const long count = std::lround(motion.duration_s() / dt_s);
   for (long k = 1; k <= count; ++k) {
-    const Pose base = motion.at(static_cast<double>(k) * dt_s);
     simulation.prepare();
-    const Step& step = simulation.step(base, dt_s);
+    const Step& step = simulation.step(motion.at(static_cast<double>(k) * dt_s), dt_s);
     ++result.steps;
     const bool is_flagged = step.flags != 0;
     result.flagged += is_flagged ? 1 : 0;
@@ -221,15 +218,10 @@ Run run(const std::shared_ptr<const Model>& model, const OddMotion& motion, doub
     const double free_mm = std::max(1.0, needle.length_mm - std::max(0.0, step.base_depth_mm));
     result.above_euler = std::max(result.above_euler, step.force_axial_N / euler_N(needle, free_mm));
     if (k % every == 0) result.force_N.push_back(step.force_axial_N);
-    const Eigen::AngleAxisd turn(base.rotation * before.rotation.conjugate());
-    const double angle = std::remainder(turn.angle(), 2.0 * std::numbers::pi);
-    const double work = 0.5 * (force + step.hand_force_N).dot(base.origin - before.origin) +
-                        0.5 * (torque + step.torque_Nmm).dot(angle * turn.axis());
+    const double work = work_of_hand(before, step);
     result.work_Nmm += work;
     result.put_in_Nmm += std::max(0.0, work);
-    force = step.hand_force_N;
-    torque = step.torque_Nmm;
-    before = base;
+    before = step;
     for (const Event& event : simulation.new_events()) {
       if (event.kind != EventKind::slip_start && event.kind != EventKind::retraction_start)
         result.events.emplace_back(event.kind, event.depth_mm);
@@ -246,7 +238,7 @@ double apart_in_force(const Run& run, const Run& finest) {
   return std::sqrt(squares / static_cast<double>(count)) / finest.most_N;
 }
 
-/// What a path breaks of its promises, in words; empty: nothing.
+/// Describes which requirements the runs of a path do not meet. The text is empty if they meet all of them.
 std::string broken(const std::vector<Run>& runs) {
   std::string text;
   const auto add = [&](const std::string& what) { text += (text.empty() ? "" : "; ") + what; };
