@@ -322,7 +322,7 @@ Finding odd_paths(Context& context) {
       "more "
       "than one step in 10,000 is flagged, or two in a row; where up to 2 ms events come in another order or more than "
       "{} mm apart, or forces differ by more than {:g} % of their peak (RMS); where the hand gains work; or where a "
-      "force is above {} times Euler’s load. A peak that lasts for one or two milliseconds differs by up to {:.0f} %.",
+      "force is above {} times Euler’s load. The largest forces of the runs up to 2 ms differ by up to {:.0f} %.",
       count, flagged, steps, kSameDepth_mm, 100.0 * kSameForce, kAboveEuler, 100.0 * peaks_apart);
   finding.why_missed = misses;
   return finding;
