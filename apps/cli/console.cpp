@@ -2,6 +2,7 @@
 #include "console.hpp"
 
 #include "output_path.hpp"
+#include "phase_times.hpp"
 #include "progress_display.hpp"
 
 #include "stylet/core/json_text.hpp"
@@ -48,6 +49,7 @@ struct Console::Parts {
   std::set<std::string> told;              ///< warnings that were given ahead
   std::string first_progress;              ///< a sentence to print before the first progress
   std::weak_ptr<ProgressDisplay> display;  ///< exists while progress may be reported
+  std::shared_ptr<PhaseTimes> phases;      ///< with --verbose, once progress may have been reported
 
   /// Prints a line. Every text of the program passes here on its way to the terminal, so this is where control
   /// characters that a file has brought into it are replaced and long quoted texts cut. @return the reason if it could
@@ -107,6 +109,10 @@ void Console::detail(std::string_view text) {
   if (parts_->options.verbose) parts_->line(stderr, "stylet: ", text);
 }
 
+void Console::tell_phases() {
+  if (parts_->phases) detail(parts_->phases->table());
+}
+
 void Console::warn(std::string_view text) {
   {
     const std::lock_guard lock(parts_->mutex);
@@ -129,7 +135,11 @@ Progress Console::progress() {
   if (parts_->options.quiet) return {};
   auto display = std::make_shared<ProgressDisplay>(stderr_is_terminal(), std::exchange(parts_->first_progress, {}));
   parts_->display = display;
-  return [display](std::string_view stage, double fraction) { display->update(stage, fraction); };
+  if (parts_->options.verbose && !parts_->phases) parts_->phases = std::make_shared<PhaseTimes>();
+  return [display, phases = parts_->phases](std::string_view stage, double fraction) {
+    if (phases) phases->enter(stage);
+    display->update(stage, fraction);
+  };
 }
 
 Result<> Console::write_json(const Json& json) {

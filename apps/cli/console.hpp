@@ -53,6 +53,8 @@ class Console {
   /// Shows the progress of long work: a bar if standard error is a terminal, otherwise plain lines from time to time.
   /// Shows nothing in the first second and with --quiet. Ends when the last copy of the returned function is destroyed.
   [[nodiscard]] Progress progress();
+  /// Prints the processor time of the phases that progress was reported of; only with --verbose.
+  void tell_phases();
 
   /// Writes the result as JSON to the target of --json; does nothing without --json. A file appears complete or not at
   /// all.

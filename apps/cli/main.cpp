@@ -103,6 +103,7 @@ int run(int argc, char** argv, Console& console) {
     if (!command.app->parsed()) continue;
     try {
       const Result<> done = command.run(console);
+      console.tell_phases();
       return done ? kOk : report(console, done.error());
     } catch (const Failed& failed) {
       return report(console, failed.error);

@@ -575,12 +575,13 @@ ContactCompliance::Nodes Insertion::nodes() const {
   return compliance().nodes(parts_->tissue.present_forces(parts_->forces()));
 }
 
-VecX Insertion::displacement() const {
+ContactCompliance::Moment Insertion::moment() const {
   const ContactForces forces = parts_->forces();
-  VecX u = compliance().displacement(parts_->tissue.present_forces(forces));
-  if (settings().creep.is_any()) u += compliance().wide_displacement(parts_->tissue.lasting_forces(forces));
-  return u;
+  const MatX lasting = settings().creep.is_any() ? parts_->tissue.lasting_forces(forces) : MatX(3, 0);
+  return compliance().moment(parts_->tissue.present_forces(forces), lasting);
 }
+
+VecX Insertion::displacement() const { return moment().displacement; }
 
 VecX Insertion::mesh_displacement() const {
   return compliance().mesh_displacement(parts_->tissue.all_forces(parts_->forces()));

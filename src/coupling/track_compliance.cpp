@@ -372,12 +372,29 @@ VecX TrackCompliance::mesh_displacement(const Eigen::Ref<const MatX>& forces) co
 }
 
 TrackCompliance::Nodes TrackCompliance::nodes(const Eigen::Ref<const MatX>& forces) const {
+  VecX load = base_load(forces);
+  const VecX u = store_->tissue().solve(load);
+  return nodes_under(std::move(load), u);
+}
+
+TrackCompliance::Moment TrackCompliance::moment(const Eigen::Ref<const MatX>& present,
+                                                const Eigen::Ref<const MatX>& lasting) const {
+  VecX load = base_load(present);
+  MatX both(load.size(), lasting.cols() > 0 ? 2 : 1);
+  both.col(0) = load;
+  if (both.cols() > 1) both.col(1) = base_load(lasting);
+  both = store_->tissue().solve(both);
+  return {both.rowwise().sum().head(3 * Eigen::Index{mesh_.locator().mesh().node_count()}),
+          nodes_under(std::move(load), both.col(0))};
+}
+
+/// @param load [N] (3n) @param u [mm] (3n) its solution
+TrackCompliance::Nodes TrackCompliance::nodes_under(VecX load, const VecX& u) const {
   const Tissue& tissue = store_->tissue();
-  const VecX load = base_load(forces);
   std::vector<Vec3> positions;
   positions.reserve(static_cast<std::size_t>(tissue.displacement_nodes()));
   for (Index node = 0; node < tissue.displacement_nodes(); ++node) positions.push_back(tissue.node_position(node));
-  return {std::move(positions), load, tissue.support_forces(tissue.solve(load))};
+  return {std::move(positions), std::move(load), tissue.support_forces(u)};
 }
 
 Mat3 TrackCompliance::gradient_at_tip(const Eigen::Ref<const MatX>& forces) const {

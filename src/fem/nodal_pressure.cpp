@@ -2,6 +2,7 @@
 #include "nodal_pressure.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace stylet::detail {
 namespace {
@@ -62,18 +63,45 @@ void NodalPressure::stiffness(std::span<const Index> tets, const MaterialOf& mat
   });
 }
 
+/// Files of a run ask for the stresses of each frame, so the groups of all nodes are found without sorting.
 MatX NodalPressure::stress(const MaterialOf& material, const VecX& u) const {
+  struct Sums {
+    Material material;
+    Index next;           // another group of the same node; −1: none
+    double change = 0.0;  // [mm³] Σ V_e / 4 div u_e
+    double volume = 0.0;  // [mm³] Σ V_e / 4
+  };
+  std::vector<Sums> groups;
+  groups.reserve(mesh_.nodes.size() + mesh_.nodes.size() / 4);
+  std::vector<Index> first(mesh_.nodes.size(), -1);  // a group of each node
+  std::vector<std::array<Index, 4>> group_of(mesh_.tets.size());
+  for (Index t = 0; t < mesh_.tet_count(); ++t) {
+    const Material of_tet = material(t);
+    const double quarter = 0.25 * tet_volume(mesh_, t);
+    const double divergence = gradient(t, u).trace();
+    for (std::size_t a = 0; a < 4; ++a) {
+      Index& newest = first[mesh_.tets[t][a]];
+      Index group = newest;
+      while (group >= 0 && !(groups[group].material == of_tet)) group = groups[group].next;
+      if (group < 0) {
+        group = static_cast<Index>(groups.size());
+        groups.push_back({of_tet, newest});
+        newest = group;
+      }
+      groups[group].change += quarter * divergence;
+      groups[group].volume += quarter;
+      group_of[t][a] = group;
+    }
+  }
   MatX stresses = LinearTetrahedra::stress([&](Index t) { return without_volume(material(t)); }, u);
-  std::vector<Index> all(mesh_.tets.size());
-  for (Index t = 0; t < mesh_.tet_count(); ++t) all[t] = t;
-  VecX divergence(mesh_.tet_count());
-  for (const Index t : all) divergence[t] = gradient(t, u).trace();
-  for_each_group(all, material, [&](const Group& group) {
-    double change = 0.0;
-    for (const Index t : group.tets) change += 0.25 * tet_volume(mesh_, t) * divergence[t];
-    const double pressure = group.material.lambda() * change / group.volume;
-    for (const Index t : group.tets) stresses.col(t).head<3>().array() += 0.25 * pressure;
-  });
+  for (Index t = 0; t < mesh_.tet_count(); ++t) {
+    double pressure = 0.0;
+    for (const Index g : group_of[t]) {
+      const Sums& group = groups[g];
+      pressure += 0.25 * group.material.lambda() * group.change / group.volume;
+    }
+    stresses.col(t).head<3>().array() += pressure;
+  }
   return stresses;
 }
 

@@ -39,31 +39,36 @@ std::vector<float> distance_beside_surface(const GridShape& g) {
   return d;
 }
 
-/// Solves Σ max(0, (t − a_i)/h_i)² = 1 for t (upwind discretisation of the eikonal equation), where a_i is the smallest
-/// distance of the neighbours along axis i and h_i the grid spacing.
-double eikonal(std::array<double, 3> a, std::array<double, 3> h) {
-  for (int x = 0; x < 2; ++x) {
-    for (int y = 0; y < 2 - x; ++y) {
-      if (a[y] > a[y + 1]) {
-        std::swap(a[y], a[y + 1]);
-        std::swap(h[y], h[y + 1]);
-      }
-    }
-  }
-  double t = a[0] + h[0];
-  for (int n = 2; n <= 3 && t > a[n - 1]; ++n) {
-    double p = 0, q = 0, r = -1;  // p t² − 2 q t + r = 0
-    for (int i = 0; i < n; ++i) {
-      const double w = 1 / (h[i] * h[i]);
-      p += w;
-      q += w * a[i];
-      r += w * a[i] * a[i];
-    }
-    const double root = q * q - p * r;
-    if (root < 0) break;
-    t = (q + std::sqrt(root)) / p;
-  }
-  return t;
+/// What the eikonal equation has along one axis.
+struct Along {
+  double a;       ///< [mm] smallest distance of the two neighbours
+  double h;       ///< [mm] grid spacing
+  double weight;  ///< [1/mm²] 1/h²
+};
+
+/// Solves Σ max(0, (t − a_i)/h_i)² = 1 for t (upwind discretisation of the eikonal equation) over three axes.
+double eikonal(Along x, Along y, Along z) {
+  const auto order = [](Along& first, Along& second) {
+    if (first.a > second.a) std::swap(first, second);
+  };
+  order(x, y);
+  order(y, z);
+  order(x, y);
+  double t = x.a + x.h;
+  if (!(t > y.a)) return t;
+  // p t² − 2 q t + r = 0
+  double p = x.weight + y.weight;
+  double q = x.weight * x.a + y.weight * y.a;
+  double r = -1 + x.weight * x.a * x.a + y.weight * y.a * y.a;
+  double root = q * q - p * r;
+  if (root < 0) return t;
+  t = (q + std::sqrt(root)) / p;
+  if (!(t > z.a)) return t;
+  p += z.weight;
+  q += z.weight * z.a;
+  r += z.weight * z.a * z.a;
+  root = q * q - p * r;
+  return root < 0 ? t : (q + std::sqrt(root)) / p;
 }
 
 }  // namespace
@@ -71,7 +76,7 @@ double eikonal(std::array<double, 3> a, std::array<double, 3> h) {
 void redistance(GridShape& g) {
   std::vector<float> d = distance_beside_surface(g);
   const std::vector<float> fixed = d;
-  const std::array<double, 3> h{g.spacing[0], g.spacing[1], g.spacing[2]};
+  const Vec3 weight = g.spacing.cwiseProduct(g.spacing).cwiseInverse();
   const auto near = [&](std::size_t n, std::size_t stride, int c, int last) {
     return static_cast<double>(std::min(c > 0 ? d[n - stride] : kFar, c < last ? d[n + stride] : kFar));
   };
@@ -93,10 +98,11 @@ void redistance(GridShape& g) {
           const std::size_t n = g.at(i, j, k);
           if (stale[n] == 0 || fixed[n] < kFar) continue;
           stale[n] = 0;
-          const std::array<double, 3> a{near(n, 1, i, g.size[0] - 1), near(n, dj, j, g.size[1] - 1),
-                                        near(n, dk, k, g.size[2] - 1)};
-          if (std::min({a[0], a[1], a[2]}) >= d[n]) continue;
-          const auto t = static_cast<float>(eikonal(a, h));
+          const Along x{near(n, 1, i, g.size[0] - 1), g.spacing[0], weight[0]};
+          const Along y{near(n, dj, j, g.size[1] - 1), g.spacing[1], weight[1]};
+          const Along z{near(n, dk, k, g.size[2] - 1), g.spacing[2], weight[2]};
+          if (std::min({x.a, y.a, z.a}) >= d[n]) continue;
+          const auto t = static_cast<float>(eikonal(x, y, z));
           if (t >= d[n]) continue;
           d[n] = t;
           const auto mark = [&](std::size_t stride, int c, int last) {

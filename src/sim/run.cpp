@@ -212,10 +212,11 @@ class Runner {
   }
 
   Result<> take_frame(const std::string& label) {
-    const Frame frame = simulation_.frame(label);
-    const Simulation::Balance balance = simulation_.balance(1.0);  // sum_up() divides by the peak force
-    summary_.residual_force_balance = std::max(summary_.residual_force_balance, balance.force);
-    summary_.residual_torque_balance = std::max(summary_.residual_torque_balance, balance.torque);
+    Simulation::Balance balance;
+    const Frame frame = simulation_.frame(label, &balance);
+    // sum_up() divides by the peak force.
+    summary_.residual_force_balance = std::max(summary_.residual_force_balance, balance.force_N);
+    summary_.residual_torque_balance = std::max(summary_.residual_torque_balance, balance.torque_N);
     summary_.compliance_condition =
         std::max(summary_.compliance_condition, simulation_.insertion().compliance_condition());
     if (label == "deepest" && target_motion_) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace stylet {
 
@@ -164,12 +165,14 @@ const Step& Simulation::step(const Pose& base, double dt) {
   return step_;
 }
 
-Frame Simulation::frame(const std::string& label) const {
+Frame Simulation::frame(const std::string& label, Balance* balance) const {
   Frame frame;
   frame.time_s = step_.time_s;
   frame.base_depth_mm = step_.base_depth_mm;
   frame.label = label;
-  frame.displacement = insertion_.displacement();
+  ContactCompliance::Moment moment = insertion_.moment();
+  frame.displacement = std::move(moment.displacement);
+  if (balance != nullptr) *balance = balance_of(moment.nodes);
   const Needle& needle = insertion_.needle();
   for (int i = 0; i < kNeedleSamples; ++i)
     frame.needle.push_back(needle.point(needle.length() * i / (kNeedleSamples - 1)));
@@ -179,8 +182,7 @@ Frame Simulation::frame(const std::string& label) const {
   return frame;
 }
 
-Simulation::Balance Simulation::balance(double scale_N) const {
-  const ContactCompliance::Nodes nodes = insertion_.nodes();
+Simulation::Balance Simulation::balance_of(const ContactCompliance::Nodes& nodes) const {
   Vec3 force = Vec3::Zero();
   Vec3 torque = Vec3::Zero();
   for (std::size_t k = 0; k < nodes.position.size(); ++k) {
@@ -193,7 +195,7 @@ Simulation::Balance Simulation::balance(double scale_N) const {
     force += f;
     torque += (nodes.position[k] - entry_).cross(f);
   }
-  return {force.norm() / scale_N, torque.norm() / (scale_N * 100.0)};
+  return {force.norm(), torque.norm() / 100.0};
 }
 
 }  // namespace stylet

@@ -134,6 +134,20 @@ class ContactCompliance {
   /// @param forces [N] LPS (3 × points())
   [[nodiscard]] virtual Nodes nodes(const Eigen::Ref<const MatX>& forces) const = 0;
 
+  /// The displacement of a frame, and the forces for its check.
+  struct Moment {
+    VecX displacement;  ///< [mm] (3n) displacement() by present forces, and wide_displacement() by lasting ones
+    Nodes nodes;        ///< under the present forces
+  };
+  /// Both at once, which takes hardly longer than one of them. Allocates.
+  /// @param present, lasting forces [N] LPS (3 × points()); `lasting` may be empty
+  [[nodiscard]] virtual Moment moment(const Eigen::Ref<const MatX>& present,
+                                      const Eigen::Ref<const MatX>& lasting) const {
+    Moment moment{displacement(present), nodes(present)};
+    if (lasting.cols() > 0) moment.displacement += wide_displacement(lasting);
+    return moment;
+  }
+
   /// Changes of the mesh since the last reset().
   [[nodiscard]] virtual std::span<const RemeshEvent> remeshing() const = 0;
 

@@ -55,6 +55,8 @@ class TrackCompliance final : public ContactCompliance {
   [[nodiscard]] VecX displacement(const Eigen::Ref<const MatX>& forces) const override;
   [[nodiscard]] VecX mesh_displacement(const Eigen::Ref<const MatX>& forces) const override;
   [[nodiscard]] Nodes nodes(const Eigen::Ref<const MatX>& forces) const override;
+  [[nodiscard]] Moment moment(const Eigen::Ref<const MatX>& present,
+                              const Eigen::Ref<const MatX>& lasting) const override;
   [[nodiscard]] std::span<const RemeshEvent> remeshing() const override { return changes_; }
 
   /// Forces on the base nodes that are equivalent to forces on the points, with the hats condensed: K u_base = load [N]
@@ -66,6 +68,7 @@ class TrackCompliance final : public ContactCompliance {
   [[nodiscard]] const SplitMesh& mesh() const { return mesh_; }
 
  private:
+  [[nodiscard]] Nodes nodes_under(VecX load, const VecX& u) const;
   [[nodiscard]] bool stored(Index base_tet) const;
   [[nodiscard]] Material material_of(Index base_tet) const;
   [[nodiscard]] Mat3 compliance(int a, int b) const;

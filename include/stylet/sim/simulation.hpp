@@ -56,17 +56,15 @@ class Simulation {
     return {events_.data(), static_cast<std::size_t>(event_count_)};
   }
 
-  /// The present state for display. Solves for the displacement of all nodes, so it must not be called in the loop.
-  [[nodiscard]] Frame frame(const std::string& label = {}) const;
-
-  /// Relative residual of the balance of forces on the tissue: of supports and contacts. The hand's force is not part
-  /// of it, because it is computed as the sum of the forces of contacts and guide and would always balance them.
+  /// What is left of the balance of forces on the tissue: of supports and contacts. The hand's force is not part of it,
+  /// because it is computed as the sum of the forces of contacts and guide and would always balance them.
   struct Balance {
-    double force = 0.0;   ///< |sum of forces| / scale_N
-    double torque = 0.0;  ///< |sum of moments about the entry| / (scale_N × 100 mm)
+    double force_N = 0.0;   ///< |sum of forces|
+    double torque_N = 0.0;  ///< |sum of moments about the entry| / 100 mm
   };
-  /// Computes the balance; must not be called in the loop. @param scale_N [N] reference force
-  [[nodiscard]] Balance balance(double scale_N) const;
+  /// The present state for display. Solves for the displacement of all nodes, so it must not be called in the loop.
+  /// @param balance if given, is set to the balance at this moment
+  [[nodiscard]] Frame frame(const std::string& label = {}, Balance* balance = nullptr) const;
 
   [[nodiscard]] const Model& model() const { return *model_; }
   [[nodiscard]] const Insertion& insertion() const { return insertion_; }
@@ -77,6 +75,7 @@ class Simulation {
   [[nodiscard]] double time_s() const { return step_.time_s; }
 
  private:
+  [[nodiscard]] Balance balance_of(const ContactCompliance::Nodes& nodes) const;
   void add_event(EventKind kind, double force_N, int region);
   void notice_turn(double advance_mm, bool in_tissue);
   [[nodiscard]] double base_depth_mm(const Pose& base) const;

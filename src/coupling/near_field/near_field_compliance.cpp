@@ -255,11 +255,11 @@ Mat3 NearFieldCompliance::gradient_at_tip(const Eigen::Ref<const MatX>& forces) 
   return far_->gradient_at_tip(forces);
 }
 
-/// Displacement of the mesh's nodes under forces on the points, corrected at the nodes that the kernel has.
+/// Corrects the displacement of the mesh's nodes under forces on the points, at the nodes that the kernel has.
 /// @param correction function: displacement of a node's place per force on a point, from g between the two [mm/N]
 template <class Correction>
-VecX NearFieldCompliance::with_corrections(const Eigen::Ref<const MatX>& forces, const Correction& correction) const {
-  VecX u = far_->displacement(forces);
+void NearFieldCompliance::add_corrections(const Eigen::Ref<const MatX>& forces, const Correction& correction,
+                                          VecX& u) const {
   for (Index node = 0; node < ground_.tissue->mesh().node_count(); ++node) {
     if (ground_.tissue->is_fixed(node) || !ground_.kernel->has(node)) continue;
     const Shape own{.count = 1, .node = {node}, .weight = {1.0}};
@@ -274,14 +274,17 @@ VecX NearFieldCompliance::with_corrections(const Eigen::Ref<const MatX>& forces,
     }
     u.segment<3>(3 * Eigen::Index{node}) += sum;
   }
-  return u;
 }
 
-VecX NearFieldCompliance::displacement(const Eigen::Ref<const MatX>& forces) const {
-  VecX u = with_corrections(forces, [&](const NearPlace& at, int point, const auto& g) {
-    return near_correction(*ground_.kernel, at, places_[static_cast<std::size_t>(point)], g);
-  });
-  if (!stiffens()) return u;
+/// Adds the near field of forces on the points to the displacement of the mesh's nodes.
+void NearFieldCompliance::add_near(const Eigen::Ref<const MatX>& forces, VecX& u) const {
+  add_corrections(
+      forces,
+      [&](const NearPlace& at, int point, const auto& g) {
+        return near_correction(*ground_.kernel, at, places_[static_cast<std::size_t>(point)], g);
+      },
+      u);
+  if (!stiffens()) return;
   const Vec3 press = forces.col(kTip);
   const Vec3 spared = press - tip_dent().under(press).linear;
   for (Index node = 0; node < ground_.tissue->mesh().node_count(); ++node) {
@@ -295,15 +298,41 @@ VecX NearFieldCompliance::displacement(const Eigen::Ref<const MatX>& forces) con
                                              softness_.front() * wide_correction(*ground_.kernel, at, tip, g)) *
                                             spared;
   }
+}
+
+/// The same for the wide part of the near field.
+void NearFieldCompliance::add_wide(const Eigen::Ref<const MatX>& forces, VecX& u) const {
+  if (!knows_wide()) {
+    add_near(forces, u);
+    return;
+  }
+  add_corrections(
+      forces,
+      [&](const NearPlace& at, int point, const auto& g) -> Mat3 {
+        const auto p = static_cast<std::size_t>(point);
+        return softness_[p] * wide_correction(*ground_.kernel, at, places_[p], g);
+      },
+      u);
+}
+
+VecX NearFieldCompliance::displacement(const Eigen::Ref<const MatX>& forces) const {
+  VecX u = far_->displacement(forces);
+  add_near(forces, u);
   return u;
 }
 
 VecX NearFieldCompliance::wide_displacement(const Eigen::Ref<const MatX>& forces) const {
-  if (!knows_wide()) return displacement(forces);
-  return with_corrections(forces, [&](const NearPlace& at, int point, const auto& g) -> Mat3 {
-    const auto p = static_cast<std::size_t>(point);
-    return softness_[p] * wide_correction(*ground_.kernel, at, places_[p], g);
-  });
+  VecX u = far_->displacement(forces);
+  add_wide(forces, u);
+  return u;
+}
+
+ContactCompliance::Moment NearFieldCompliance::moment(const Eigen::Ref<const MatX>& present,
+                                                      const Eigen::Ref<const MatX>& lasting) const {
+  Moment moment = far_->moment(present, lasting);
+  add_near(present, moment.displacement);
+  if (lasting.cols() > 0) add_wide(lasting, moment.displacement);
+  return moment;
 }
 
 VecX NearFieldCompliance::mesh_displacement(const Eigen::Ref<const MatX>& forces) const {

@@ -64,12 +64,16 @@ class NearFieldCompliance final : public ContactCompliance {
   [[nodiscard]] VecX mesh_displacement(const Eigen::Ref<const MatX>& forces) const override;
   [[nodiscard]] double softness(int point) const override { return softness_[static_cast<std::size_t>(point)]; }
   [[nodiscard]] Nodes nodes(const Eigen::Ref<const MatX>& forces) const override;
+  [[nodiscard]] Moment moment(const Eigen::Ref<const MatX>& present,
+                              const Eigen::Ref<const MatX>& lasting) const override;
   [[nodiscard]] std::span<const RemeshEvent> remeshing() const override { return {}; }
 
  private:
   [[nodiscard]] Mat3 of_mesh_at_tip(int point, int medium);
   template <class Correction>
-  VecX with_corrections(const Eigen::Ref<const MatX>& forces, const Correction& correction) const;
+  void add_corrections(const Eigen::Ref<const MatX>& forces, const Correction& correction, VecX& u) const;
+  void add_near(const Eigen::Ref<const MatX>& forces, VecX& u) const;
+  void add_wide(const Eigen::Ref<const MatX>& forces, VecX& u) const;
   template <class OfMesh>
   void write_block(int point, int other, const OfMesh& g);
   template <class OfMesh>
