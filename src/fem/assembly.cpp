@@ -61,7 +61,7 @@ Assembled assemble(const Discretisation& discretisation, Index tets, const Discr
   std::iota(all.begin(), all.end(), 0);
 
   std::vector<std::vector<Index>> neighbours(free_dofs / 3);
-  discretisation.stiffness(all, material, [&](std::span<const Index> nodes, const MatX& /*K*/) {
+  discretisation.parts(all, material, [&](std::span<const Index> nodes) {
     for (const Index a : nodes) {
       if (first_dof[a] < 0) continue;
       auto& list = neighbours[first_dof[a] / 3];
@@ -86,7 +86,7 @@ Assembled assemble(const Discretisation& discretisation, Index tets, const Discr
     }
   };
   // Each pair of nodes is summed once and then mirrored, so K is symmetric to the last bit.
-  discretisation.stiffness(all, material, [&](std::span<const Index> nodes, const MatX& part) {
+  discretisation.stiffness(all, material, [&](std::span<const Index> nodes, const Eigen::Ref<const MatX>& part) {
     for (std::size_t a = 0; a < nodes.size(); ++a) {
       const Index row = first_dof[nodes[a]];
       if (row < 0) continue;

@@ -18,7 +18,8 @@ class Discretisation {
  public:
   using MaterialOf = std::function<Material(Index tet)>;
   /// Receives a symmetric matrix [N/mm] (3k × 3k) between k nodes; only the lower triangle of blocks is valid.
-  using Add = std::function<void(std::span<const Index> nodes, const MatX& K)>;
+  using Add = std::function<void(std::span<const Index> nodes, const Eigen::Ref<const MatX>& K)>;
+  using Visit = std::function<void(std::span<const Index> nodes)>;
 
   /// @param mesh must outlive the discretisation
   static std::unique_ptr<Discretisation> make(Element element, const TetMesh& mesh);
@@ -34,6 +35,8 @@ class Discretisation {
 
   /// Passes the stiffness of the elements `tets` alone to `add`, in parts, always in the same order.
   virtual void stiffness(std::span<const Index> tets, const MaterialOf& material, const Add& add) const = 0;
+  /// Passes the nodes of each of these parts to `visit`.
+  virtual void parts(std::span<const Index> tets, const MaterialOf& material, const Visit& visit) const = 0;
 
   /// Stress at the centroid of every element of the mesh: xx yy zz xy yz zx [MPa] (6 × tets).
   /// @param u [mm] (3 × nodes)

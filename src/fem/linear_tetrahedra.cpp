@@ -47,6 +47,10 @@ void LinearTetrahedra::stiffness(std::span<const Index> tets, const MaterialOf& 
   }
 }
 
+void LinearTetrahedra::parts(std::span<const Index> tets, const MaterialOf& /*material*/, const Visit& visit) const {
+  for (const Index t : tets) visit(mesh_.tets[t]);
+}
+
 Mat3 LinearTetrahedra::gradient(Index tet, const VecX& u) const {
   Eigen::Matrix<double, 3, 4> values;
   for (int a = 0; a < 4; ++a) values.col(a) = u.segment<3>(3 * Eigen::Index{mesh_.tets[tet][a]});

@@ -16,6 +16,7 @@ class LinearTetrahedra : public Discretisation {
   [[nodiscard]] Shape shape(Index tet, const Vec4& weights) const final;
   [[nodiscard]] ShapeGradients shape_gradients(Index tet, const Vec4& weights) const final;
   void stiffness(std::span<const Index> tets, const MaterialOf& material, const Add& add) const override;
+  void parts(std::span<const Index> tets, const MaterialOf& material, const Visit& visit) const override;
   [[nodiscard]] MatX stress(const MaterialOf& material, const VecX& u) const override;
   [[nodiscard]] VecX forces(const MaterialOf& material, const VecX& u, const std::vector<char>& wanted) const final;
 

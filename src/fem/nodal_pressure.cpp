@@ -22,6 +22,7 @@ void NodalPressure::for_each_group(std::span<const Index> tets, const MaterialOf
   std::sort(around.begin(), around.end());
   std::vector<Index> rest;
   std::vector<Index> group;
+  std::vector<Index> nodes;
   for (std::size_t first = 0; first < around.size();) {
     const Index node = around[first].first;
     rest.clear();
@@ -31,35 +32,52 @@ void NodalPressure::for_each_group(std::span<const Index> tets, const MaterialOf
       const auto others = std::stable_partition(rest.begin(), rest.end(), [&](Index t) { return material(t) == one; });
       group.assign(rest.begin(), others);
       rest.erase(rest.begin(), others);
+      nodes.clear();
       double volume = 0.0;
-      for (const Index t : group) volume += 0.25 * tet_volume(mesh_, t);
-      visit({node, group, one, volume});
+      for (const Index t : group) {
+        nodes.insert(nodes.end(), mesh_.tets[t].begin(), mesh_.tets[t].end());
+        volume += 0.25 * tet_volume(mesh_, t);
+      }
+      std::sort(nodes.begin(), nodes.end());
+      nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+      visit({group, nodes, one, volume});
     }
   }
+}
+
+void NodalPressure::parts(std::span<const Index> tets, const MaterialOf& material, const Visit& visit) const {
+  LinearTetrahedra::parts(tets, material, visit);
+  for_each_group(tets, material, [&](const Group& group) { visit(group.nodes); });
 }
 
 void NodalPressure::stiffness(std::span<const Index> tets, const MaterialOf& material, const Add& add) const {
   LinearTetrahedra::stiffness(
       tets, [&](Index t) { return without_volume(material(t)); }, add);
-  std::vector<Index> nodes;
+  // Kept for all groups, because they would take longer to allocate than to fill.
+  VecX d;
+  MatX K;
   for_each_group(tets, material, [&](const Group& group) {
-    nodes.clear();
-    for (const Index t : group.tets) nodes.insert(nodes.end(), mesh_.tets[t].begin(), mesh_.tets[t].end());
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    const auto rows = 3 * static_cast<Eigen::Index>(group.nodes.size());
+    if (rows > d.size()) {
+      d.resize(rows);
+      K.resize(rows, rows);
+    }
     // d is defined by V_a θ_a = dᵀ u.
-    VecX d = VecX::Zero(3 * static_cast<Eigen::Index>(nodes.size()));
+    auto of_group = d.head(rows);
+    of_group.setZero();
     for (const Index t : group.tets) {
       const auto gradients = barycentric_gradients(mesh_, t);
       const double quarter = 0.25 * tet_volume(mesh_, t);
       for (int b = 0; b < 4; ++b) {
-        const auto at = std::lower_bound(nodes.begin(), nodes.end(), mesh_.tets[t][b]) - nodes.begin();
-        d.segment<3>(3 * at) += quarter * gradients.col(b);
+        const auto at =
+            std::lower_bound(group.nodes.begin(), group.nodes.end(), mesh_.tets[t][b]) - group.nodes.begin();
+        of_group.segment<3>(3 * at) += quarter * gradients.col(b);
       }
     }
-    MatX K = d * d.transpose();
-    K *= group.material.lambda() / group.volume;
-    add(nodes, K);
+    auto of_nodes = K.topLeftCorner(rows, rows);
+    of_nodes.noalias() = of_group * of_group.transpose();
+    of_nodes *= group.material.lambda() / group.volume;
+    add(group.nodes, of_nodes);
   });
 }
 

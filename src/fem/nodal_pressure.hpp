@@ -15,13 +15,14 @@ class NodalPressure final : public LinearTetrahedra {
   using LinearTetrahedra::LinearTetrahedra;
 
   void stiffness(std::span<const Index> tets, const MaterialOf& material, const Add& add) const override;
+  void parts(std::span<const Index> tets, const MaterialOf& material, const Visit& visit) const override;
   [[nodiscard]] MatX stress(const MaterialOf& material, const VecX& u) const override;
 
  private:
   /// The elements of one material around a node.
   struct Group {
-    Index node;
     std::span<const Index> tets;
+    std::span<const Index> nodes;  ///< of these elements, ascending
     Material material;
     double volume;  ///< [mm³] Σ V_e / 4
   };

@@ -64,7 +64,7 @@ void QuadraticPart::couple_rim() {
     if (std::any_of(nodes.begin(), nodes.end(), is_rim)) at_rim.push_back(t);
   }
   std::vector<Eigen::Triplet<double>> entries;
-  const auto add = [&](std::span<const Index> nodes, const MatX& K) {
+  const auto add = [&](std::span<const Index> nodes, const Eigen::Ref<const MatX>& K) {
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       for (std::size_t j = 0; j < nodes.size(); ++j) {
         if (is_rim(nodes[i]) || !is_rim(nodes[j])) continue;

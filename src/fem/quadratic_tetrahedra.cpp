@@ -86,6 +86,10 @@ ShapeGradients QuadraticTetrahedra::shape_gradients(Index tet, const Vec4& weigh
   return shape;
 }
 
+void QuadraticTetrahedra::parts(std::span<const Index> tets, const MaterialOf& /*material*/, const Visit& visit) const {
+  for (const Index t : tets) visit(nodes_[t]);
+}
+
 void QuadraticTetrahedra::stiffness(std::span<const Index> tets, const MaterialOf& material, const Add& add) const {
   MatX K(3 * kMostElementNodes, 3 * kMostElementNodes);
   for (const Index t : tets) {
@@ -127,7 +131,7 @@ VecX QuadraticTetrahedra::forces(const MaterialOf& material, const VecX& u, cons
   }
   VecX forces = VecX::Zero(u.size());
   VecX own(3 * kMostElementNodes);
-  stiffness(touched, material, [&](std::span<const Index> element, const MatX& K) {
+  stiffness(touched, material, [&](std::span<const Index> element, const Eigen::Ref<const MatX>& K) {
     for (int i = 0; i < kMostElementNodes; ++i) own.segment<3>(3 * i) = u.segment<3>(3 * Eigen::Index{element[i]});
     const VecX pull = K.selfadjointView<Eigen::Lower>() * own;
     for (int i = 0; i < kMostElementNodes; ++i) {

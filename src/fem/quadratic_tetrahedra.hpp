@@ -17,6 +17,7 @@ class QuadraticTetrahedra final : public Discretisation {
   [[nodiscard]] Shape shape(Index tet, const Vec4& weights) const override;
   [[nodiscard]] ShapeGradients shape_gradients(Index tet, const Vec4& weights) const override;
   void stiffness(std::span<const Index> tets, const MaterialOf& material, const Add& add) const override;
+  void parts(std::span<const Index> tets, const MaterialOf& material, const Visit& visit) const override;
   [[nodiscard]] MatX stress(const MaterialOf& material, const VecX& u) const override;
   [[nodiscard]] VecX forces(const MaterialOf& material, const VecX& u, const std::vector<char>& wanted) const override;
 

@@ -146,7 +146,7 @@ MeshKernel::Row MeshKernel::unsolved_row(Index node, const Rings& rings) const {
   return row;
 }
 
-void MeshKernel::solve(Row& row, const Rings& rings, const SkinAt& skin_at) const {
+void MeshKernel::solve(Row& row, const Rings& rings, const SkinAt& skin_at, Patch& patch) const {
   const Tissue& tissue = *tissue_;
   const Vec3 x = tissue.node_position(row.node);
   std::vector<Index> rim;
@@ -168,8 +168,8 @@ void MeshKernel::solve(Row& row, const Rings& rings, const SkinAt& skin_at) cons
     }
     MatX force = MatX::Zero(3 * static_cast<Eigen::Index>(row.near.size()), 3);
     force.middleRows<3>(3 * place_of(row.node, row)).setIdentity();
-    const Patch patch = make_patch(tissue, rings.tets, rings.nodes, rings.moves,
-                                   {kUnit_MPa, ground_->poisson[static_cast<std::size_t>(m)]});
+    patch.assemble(tissue, rings.tets, rings.nodes, rings.moves,
+                   {kUnit_MPa, ground_->poisson[static_cast<std::size_t>(m)]});
     const MatX u = patch.displacements(on_rim, std::move(force));
     for (std::size_t k = 0; k < blocks.size(); ++k) blocks[k] = u.middleRows<3>(3 * static_cast<Eigen::Index>(k));
   }
@@ -197,7 +197,9 @@ std::vector<Index> MeshKernel::missing(std::span<const Index> nodes) const {
 std::shared_ptr<const MeshKernel::Row> MeshKernel::make_row(Index node) const {
   const Rings rings = rings_around(node);
   auto row = std::make_shared<Row>(unsolved_row(node, rings));
-  solve(*row, rings, [&](Index at) { return nearest_skin(at); });
+  Patch patch;
+  solve(
+      *row, rings, [&](Index at) { return nearest_skin(at); }, patch);
   return row;
 }
 
@@ -227,8 +229,10 @@ void MeshKernel::add_nodes(std::span<const Index> nodes, const Progress& progres
   for_each_in_parallel(
       pieces,
       [&](std::size_t piece) {
+        Patch patch;
         each_of_piece(piece, [&](std::size_t k) {
-          solve(*fresh[k], rings[k], [&](Index node) { return skin[static_cast<std::size_t>(node)]; });
+          solve(
+              *fresh[k], rings[k], [&](Index node) { return skin[static_cast<std::size_t>(node)]; }, patch);
         });
       },
       progress, "near field");

@@ -14,6 +14,8 @@
 
 namespace stylet {
 
+class Patch;
+
 /// The mesh kernel g: the displacement that this mesh gives to a point force in an unbounded medium, near the force. It
 /// is the discrete counterpart of the medium's kernel, between displacement nodes.
 ///
@@ -112,7 +114,7 @@ class MeshKernel {
   [[nodiscard]] std::vector<Index> missing(std::span<const Index> nodes) const;
   [[nodiscard]] Rings rings_around(Index node) const;
   [[nodiscard]] Row unsolved_row(Index node, const Rings& rings) const;
-  void solve(Row& row, const Rings& rings, const SkinAt& skin_at) const;
+  void solve(Row& row, const Rings& rings, const SkinAt& skin_at, Patch& patch) const;
   [[nodiscard]] NearSurface nearest_skin(Index node) const {
     return ground_->skin.nearest(tissue_->node_position(node));
   }
