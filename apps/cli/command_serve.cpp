@@ -219,6 +219,7 @@ Result<> run_serve(const ServeArguments& arguments, Console& console) {
   settings.session.recordings = arguments.recordings;
   settings.session.keep_bytes = keep_bytes(arguments.keep_GB);
   settings.session.say = [&console](const std::string& text) { console.warn(text); };
+  settings.session.log = [&console](const std::string& text) { console.detail(text); };
   need(check_output_folder(arguments.recordings));
   need(add_inputs(arguments, settings.session, console));
   EndSignal end;

@@ -8,6 +8,7 @@
 #include "seed_watch.hpp"
 #include "sim/base_steps.hpp"
 #include "stylet/core/flush_denormals.hpp"
+#include "stylet/sim/far_gland.hpp"
 #include "stylet/sim/harms.hpp"
 #include "stylet/sim/target_motion.hpp"
 #include "stylet/sim/unbroken_surface.hpp"
@@ -84,6 +85,7 @@ class NeedleOnItsWay {
   std::vector<SeedHistory> dwells_;  ///< of a catheter
   NeedleRecorder recorder_;
   UnbrokenSurface unbroken_;
+  FarGland far_gland_;
   NeedleOutcome out_;
   long taken_ = 0;       ///< number of steps so far
   double time_s_ = 0.0;  ///< [s] of the needle's own motion
@@ -123,7 +125,9 @@ void NeedleOnItsWay::take_step(Simulation& simulation, TargetMotion* gland, cons
   unbroken_.add(simulation);
   for (const Event& event : simulation.new_events()) needle.events.push_back(event);
   if (gland != nullptr && taken_ % kGlandEvery == 0) {
-    const Vec3 shift = gland->now(simulation.insertion()).motion.shift_mm;
+    const VolumeMotion motion = gland->now(simulation.insertion()).motion;
+    far_gland_.add(step, motion);
+    const Vec3 shift = motion.shift_mm;
     if (shift.norm() > needle.gland_shift_mm.norm()) needle.gland_shift_mm = shift;
   }
 }
@@ -139,7 +143,9 @@ NeedleOutcome NeedleOnItsWay::outcome(bool has_gland) {
     out.warnings.push_back(fmt::format("{} {}: {}", catheter ? "Catheter" : "Needle", load_.name, text));
   };
   for (const std::string& harm : harms(needle.events)) warn(harm);
-  if (auto warning = unbroken_.warning()) warn(*warning);
+  for (const auto& warning : {unbroken_.warning(), far_gland_.warning()}) {
+    if (warning) warn(*warning);
+  }
   if (without_balance_ > 0) {
     warn(fmt::format("In {} of {} steps no balance of needle and tissue was found; a smaller run.dt_ms helps.",
                      without_balance_, needle.steps));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "field_maker.hpp"
 
+#include "stylet/core/parallel.hpp"
 #include "stylet/core/survive.hpp"
 
 #include <sys/resource.h>
@@ -68,6 +69,7 @@ void FieldMaker::make(std::shared_ptr<const Model> model) {
   survive(
       "the picture of the tissue's motion", [&] { prepare(std::move(model)); },
       [&](const Error& why) { problem_ = why.what; });
+  seconds_ = work_seconds();
   done_.store(true, std::memory_order_release);
 }
 

@@ -31,10 +31,12 @@ class FieldMaker {
   /// The part of the work that is done, 0…1.
   [[nodiscard]] double fraction() const { return fraction_.load(std::memory_order_relaxed); }
   [[nodiscard]] bool done() const { return done_.load(std::memory_order_acquire); }
-  /// The field. Read it and the next only when done() is true. Empty: the work was given up, or failed.
+  /// The field. Read it and what follows only when done() is true. Empty: the work was given up, or failed.
   [[nodiscard]] const std::shared_ptr<const DisplayField>& field() const { return made_; }
   /// Why the work failed; empty: it did not.
   [[nodiscard]] const std::string& problem() const { return problem_; }
+  /// Processor time of the work.
+  [[nodiscard]] double seconds() const { return seconds_; }
 
  private:
   void wait(std::chrono::duration<double> longest);
@@ -49,6 +51,7 @@ class FieldMaker {
   std::atomic<bool> done_ = false;
   std::shared_ptr<const DisplayField> made_;
   std::string problem_;
+  double seconds_ = 0.0;
   std::jthread thread_;  ///< last member, so that it starts when the others exist
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "open_case.hpp"
 
+#include "stylet/core/parallel.hpp"
 #include "stylet/sim/plan.hpp"
 
 #include <fmt/format.h>
@@ -134,8 +135,10 @@ ToOpen OpenCase::other_needle(const InsertionPlan& plan, const std::string& wher
 }
 
 Result<Reply> OpenCase::open(const ToOpen& what, const Progress& progress) {
+  const double before = work_seconds();
   auto loaded = what.load(progress);
   if (!loaded) return loaded.error();
+  log(*loaded->model, "the model", work_seconds() - before);
   if (auto usable = DisplayField::check(*loaded->model); !usable) return usable.error();
   std::shared_ptr<ImplantDesk> implant;
   if (loaded->implant && !what.is_other_needle) {
@@ -247,9 +250,17 @@ void OpenCase::keep_needle() {
   if (!field_maker_) implant_->models().begin_after(*needle);
 }
 
+/// Logs the processor time [s] of a part of an open needle.
+void OpenCase::log(const Model& model, const char* part, double seconds) const {
+  if (!settings_.log) return;
+  settings_.log(fmt::format("{} for {} in {} nodes: {:.2f} s of processor time", part, model.insertions().front().name,
+                            model.mesh().node_count(), seconds));
+}
+
 bool OpenCase::take_field() {
   leaving_.forget_ended();
   if (!field_maker_ || !field_maker_->done()) return false;
+  log(*open_.model, "the picture of the tissue's motion", field_maker_->seconds());
   open_.field = field_maker_->field();
   no_field_ = field_maker_->problem();
   field_maker_.reset();

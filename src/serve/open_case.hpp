@@ -50,6 +50,7 @@ class OpenCase {
   void begin_case(std::shared_ptr<ImplantDesk> implant, Reply& reply);
   void begin_map();
   void keep_needle();
+  void log(const Model& model, const char* part, double seconds) const;
   void show_scene(std::size_t way, Reply& reply);
   Reply put(std::size_t which, Reply reply = {});
 

@@ -201,7 +201,7 @@ Result<std::shared_ptr<const DisplayField>> DisplayField::prepare(std::shared_pt
   field->find_surface();
   field->find_zone(options.reach_mm);
   const auto& zone = field->statistics_.zone_dofs;
-  zone <= options.columns ? field->keep_all(progress) : field->choose_skeleton(options, progress);
+  2 * zone <= 3 * options.columns ? field->keep_all(progress) : field->choose_skeleton(options, progress);
   report(progress, "display: columns", 1.0);
   field->keep_near_rows();
   Statistics& s = field->statistics_;

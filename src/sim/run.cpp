@@ -4,6 +4,7 @@
 #include "needles_in_place.hpp"
 #include "stylet/core/flush_denormals.hpp"
 #include "stylet/core/version.hpp"
+#include "stylet/sim/far_gland.hpp"
 #include "stylet/sim/gland_watch.hpp"
 #include "stylet/sim/harms.hpp"
 #include "stylet/sim/prediction.hpp"
@@ -118,6 +119,7 @@ class Runner {
     const long deepest = deepest_step(*model_, insertion, motion);
     simulation_.place(insertion);
     UnbrokenSurface unbroken;
+    FarGland far_gland;
     std::optional<GlandWatch> gland;
     if (!model_->target_regions().empty()) {
       if (auto ready = prepare_target_motion(); !ready) return ready;
@@ -139,6 +141,7 @@ class Runner {
         const TargetMotion::Moment now = target_motion_->now(simulation_.insertion());
         summary_.gland_path.push_back(
             gland->add(record, simulation_.new_events(), now.motion, now.at_rest, k == deepest));
+        far_gland.add(record, now.motion);
         if (beside) beside->add(record, simulation_.new_events(), now.motion, now.at_rest, k == deepest);
       }
       if (k == deepest) {
@@ -165,7 +168,9 @@ class Runner {
     };
     if (auto done = drive(simulation_, motion, motion.count, watch); !done) return done;
     if (gland) keep(gland->result());
-    if (auto warning = unbroken.warning()) summary_.warnings.push_back(std::move(*warning));
+    for (auto warning : {unbroken.warning(), far_gland.warning()}) {
+      if (warning) summary_.warnings.push_back(*std::move(warning));
+    }
     return take_frame("after");
   }
 

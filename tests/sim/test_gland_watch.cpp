@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "box_patient.hpp"
+#include "stylet/sim/far_gland.hpp"
 #include "stylet/sim/gland_watch.hpp"
 
 #include <algorithm>
@@ -84,6 +85,35 @@ TEST(GlandWatch, what_is_left_is_asked_for_a_second_after_the_needle_is_out) {
   ASSERT_TRUE(told(shifts, {out}, 1, true).shift_residual_mm) << "nothing acts on the tissue any more";
   EXPECT_TRUE(told(shifts, {out}, 1, true).shift_residual_mm->isZero(0.0));
   EXPECT_FALSE(told(shifts, {}, 1, true).shift_residual_mm) << "the needle is still in";
+}
+
+VolumeMotion turned(double degrees, double posterior_mm) {
+  VolumeMotion motion;
+  motion.rotation_rad = degrees * std::numbers::pi / 180.0 * Vec3(0.6, 0.0, -0.8);
+  motion.shift_mm = {0.0, posterior_mm, 0.0};
+  return motion;
+}
+
+TEST(FarGland, within_what_glands_do_is_no_warning) {
+  FarGland far;
+  far.add(at_time(1.0), turned(14.0, -20.0));
+  EXPECT_EQ(far.warning(), std::nullopt);
+}
+
+TEST(FarGland, beyond_that_is_told_at_its_furthest_with_the_depth) {
+  FarGland turn;
+  for (const double degrees : {4.0, 21.4, 17.0}) turn.add(at_time(degrees), turned(degrees, 3.0));
+  ASSERT_TRUE(turn.warning());
+  EXPECT_NE(turn.warning()->find("turned by 21° when the needle's base was 214.0 mm deep"), std::string::npos)
+      << *turn.warning();
+  EXPECT_EQ(turn.warning()->find("moved"), std::string::npos) << *turn.warning();
+
+  FarGland shift;
+  for (const double mm : {24.0, -26.0, 3.0}) shift.add(at_time(std::abs(mm)), turned(0.0, mm));
+  ASSERT_TRUE(shift.warning());
+  EXPECT_NE(shift.warning()->find("moved by 26 mm when the needle's base was 260.0 mm deep"), std::string::npos)
+      << *shift.warning();
+  EXPECT_EQ(shift.warning()->find("turned"), std::string::npos) << *shift.warning();
 }
 
 TEST(GlandMotion, turns_are_told_by_where_the_gland_goes) {

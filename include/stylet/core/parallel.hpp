@@ -21,4 +21,7 @@ void set_worker_threads(int most);
 void for_each_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work,
                           const Progress& progress = {}, std::string_view stage = {});
 
+/// [s] Processor time of the calling thread, and of the threads that for_each_in_parallel() has started for it.
+[[nodiscard]] double work_seconds();
+
 }  // namespace stylet

@@ -46,6 +46,8 @@ struct SessionSettings {
   std::function<std::uintmax_t(const std::filesystem::path&)> free_bytes;
   /// Receives messages about removed recordings and full disks, for the terminal; may be empty. Called from any thread.
   std::function<void(const std::string&)> say;
+  /// Receives what the server has done and how long it took, for a log; may be empty. Called from the session's thread.
+  std::function<void(const std::string&)> log;
 };
 
 }  // namespace stylet::serve
