@@ -33,7 +33,7 @@ void add_common_options(CLI::App& app, CommonOptions& common) {
   option(&app, "--json", common.json, "FILE", "Write the result as JSON to this file; '-' for standard output")
       ->group(group);
   app.add_flag("--quiet", common.quiet, "Print warnings and errors only")->group(group);
-  app.add_flag("--verbose", common.verbose, "Print more details of the work")->group(group);
+  app.add_flag("--verbose", common.verbose, "Print more details of the work, and the processor time of its phases")->group(group);
   option(&app, "--threads", common.threads, "N", "Use at most N threads (default: one per core)")
       ->check(whole_number_between(1, 1024))
       ->group(group);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace stylet::detail {
 namespace {
@@ -14,19 +15,32 @@ Material without_volume(const Material& material) { return {2.0 * material.mu(),
 
 void NodalPressure::for_each_group(std::span<const Index> tets, const MaterialOf& material,
                                    const std::function<void(const Group&)>& visit) const {
-  std::vector<std::pair<Index, Index>> around;  // node, element
-  around.reserve(4 * tets.size());
+  // The elements around each node: those of node k are around[begin[k]] … around[begin[k + 1] − 1].
+  std::vector<Index> number(mesh_.nodes.size(), 0);  // of elements around each node, then where the next one goes
+  std::vector<Index> all;
   for (const Index t : tets) {
-    for (const Index a : mesh_.tets[t]) around.emplace_back(a, t);
+    for (const Index a : mesh_.tets[t]) {
+      if (number[a]++ == 0) all.push_back(a);
+    }
   }
-  std::sort(around.begin(), around.end());
+  std::sort(all.begin(), all.end());
+  std::vector<Index> begin{0};
+  for (const Index a : all) {
+    begin.push_back(begin.back() + number[a]);
+    number[a] = begin[begin.size() - 2];
+  }
+  std::vector<Index> around(4 * tets.size());
+  for (const Index t : tets) {
+    for (const Index a : mesh_.tets[t]) around[number[a]++] = t;
+  }
   std::vector<Index> rest;
   std::vector<Index> group;
   std::vector<Index> nodes;
-  for (std::size_t first = 0; first < around.size();) {
-    const Index node = around[first].first;
-    rest.clear();
-    for (; first < around.size() && around[first].first == node; ++first) rest.push_back(around[first].second);
+  std::vector<Index>& group_of = number;  // the number of the last group that has a node
+  std::fill(group_of.begin(), group_of.end(), -1);
+  Index groups = 0;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    rest.assign(around.begin() + begin[k], around.begin() + begin[k + 1]);
     while (!rest.empty()) {
       const Material one = material(rest.front());
       const auto others = std::stable_partition(rest.begin(), rest.end(), [&](Index t) { return material(t) == one; });
@@ -35,12 +49,14 @@ void NodalPressure::for_each_group(std::span<const Index> tets, const MaterialOf
       nodes.clear();
       double volume = 0.0;
       for (const Index t : group) {
-        nodes.insert(nodes.end(), mesh_.tets[t].begin(), mesh_.tets[t].end());
         volume += 0.25 * tet_volume(mesh_, t);
+        for (const Index a : mesh_.tets[t]) {
+          if (std::exchange(group_of[a], groups) != groups) nodes.push_back(a);
+        }
       }
       std::sort(nodes.begin(), nodes.end());
-      nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
       visit({group, nodes, one, volume});
+      ++groups;
     }
   }
 }
@@ -74,9 +90,13 @@ void NodalPressure::stiffness(std::span<const Index> tets, const MaterialOf& mat
         of_group.segment<3>(3 * at) += quarter * gradients.col(b);
       }
     }
+    // Blocks on the diagonal are wanted whole, others below it only.
     auto of_nodes = K.topLeftCorner(rows, rows);
-    of_nodes.noalias() = of_group * of_group.transpose();
-    of_nodes *= group.material.lambda() / group.volume;
+    const double stiffness = group.material.lambda() / group.volume;
+    for (Eigen::Index j = 0; j < rows; ++j) {
+      const Eigen::Index below = rows - j / 3 * 3;
+      of_nodes.col(j).tail(below) = (of_group.tail(below) * of_group[j]) * stiffness;
+    }
     add(group.nodes, of_nodes);
   });
 }
