@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -33,7 +34,8 @@ void add_common_options(CLI::App& app, CommonOptions& common) {
   option(&app, "--json", common.json, "FILE", "Write the result as JSON to this file; '-' for standard output")
       ->group(group);
   app.add_flag("--quiet", common.quiet, "Print warnings and errors only")->group(group);
-  app.add_flag("--verbose", common.verbose, "Print more details of the work, and the processor time of its phases")->group(group);
+  app.add_flag("--verbose", common.verbose, "Print more details of the work, and the processor time of its phases")
+      ->group(group);
   option(&app, "--threads", common.threads, "N", "Use at most N threads (default: one per core)")
       ->check(whole_number_between(1, 1024))
       ->group(group);
@@ -112,11 +114,7 @@ int run(int argc, char** argv, Console& console) {
   return kBadInput;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  Console console(prepare_standard_streams());
-  receive_remarks([&console](const std::string& remark) { console.warn(remark); });
+int guarded_run(int argc, char** argv, Console& console) {
   try {
     return run(argc, argv, console);
   } catch (const std::bad_alloc&) {
@@ -124,6 +122,19 @@ int main(int argc, char** argv) {
   } catch (const std::exception& unexpected) {
     console.detail(fmt::format("the fault says of itself: {}", unexpected.what()));
     console.error("unexpected failure. Please report it with the command line and the input");
+  }
+  return kFailed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    Console console(prepare_standard_streams());
+    receive_remarks([&console](const std::string& remark) { console.warn(remark); });
+    return guarded_run(argc, argv, console);
+  } catch (const std::bad_alloc&) {  // not even the console can be had
+    std::fputs("stylet: error: out of memory. Use a machine with more memory.\n", stderr);
   }
   return kFailed;
 }

@@ -72,6 +72,9 @@ class ContactSystem {
   /// Puts the prepared needle's side and its factor in the place of the present ones.
   void take_prepared();
 
+  /// Whether errors of needles at rest are solved for however small they are (RestingGrips).
+  void solve_all_at_rest(bool all) { resting_.solve_all(all); }
+
   /// Adds the tip with the present A and N in the next solve(). Valid as long as neither the tip nor the matrix changes
   /// much.
   void add_tip();

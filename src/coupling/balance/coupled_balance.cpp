@@ -387,6 +387,7 @@ bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
         error = look(h);
       }
     }
+    system_.solve_all_at_rest(iteration > 1 && !(error < kFalls * progress.before));
     if (all > 0 && !effort.allows(effort.iteration() + (exact ? effort.tangent() : 0.0))) break;
     effort.spend(effort.iteration());
     progress.before = iteration == 0 ? std::max(error, kNear / parts_.settings.tolerance) : error;

@@ -86,7 +86,7 @@ bool RestingGrips::right_side(const NeedleSide& side) {
   matrix_.fill_springs(z);
   z.head(matrix_.contact_rows()) += side.free.segment(3, matrix_.contact_rows());
 
-  const double negligible_N = kNegligible * rows_.allowed();
+  const double negligible_N = solves_all_ ? 0.0 : kNegligible * rows_.allowed();
   if (matrix_.is_negligible(z, negligible_N)) {
     moves_ = false;
     return false;

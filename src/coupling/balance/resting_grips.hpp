@@ -32,6 +32,8 @@ class RestingGrips {
   [[nodiscard]] int count() const { return matrix_.count(); }
   /// Marks B as outdated, because compliances have changed.
   void outdate() { matrix_.outdate(); }
+  /// Whether errors at rest are solved for however small they are; otherwise those that hardly move a force are left.
+  void solve_all(bool all) { solves_all_ = all; }
   /// Marks the tip's columns as outdated, because it has moved.
   void move_tip() { tip_is_new_ = true; }
 
@@ -78,6 +80,7 @@ class RestingGrips {
   SlidingRows sliding_;
   HeldTissue held_;
   std::uint64_t version_ = 0;
+  bool solves_all_ = false;
   bool tip_is_new_ = true;  ///< whether the tip's columns have to be solved
   bool moves_ = false;      ///< whether still_ is not zero
   MatX compliance_;         ///< (3 others × 3 others)

@@ -5,8 +5,10 @@
 #include "detail/patient_attributes.hpp"
 #include "stylet/core/version.hpp"
 
+#include <dcmtk/dcmdata/dcdict.h>
 #include <dcmtk/dcmdata/dcostrmf.h>
 #include <dcmtk/dcmdata/dcwcache.h>
+#include <dcmtk/oflog/oflog.h>
 #include <fmt/format.h>
 
 #include <boost/multiprecision/cpp_int.hpp>
@@ -48,6 +50,8 @@ std::string short_text(const std::string& text, std::size_t most) {
   return out;
 }
 
+Filler::Filler() { OFLog::configure(OFLogger::OFF_LOG_LEVEL); }
+
 std::string print_of(const PatientRecord& patient) {
   std::string text = fmt::format("{}\n{}\n{}\n{}\n", patient.study_uid, patient.frame_of_reference,
                                  patient.position_reference, patient.structure_set);
@@ -77,6 +81,8 @@ void fill_common(Filler& fill, DcmDataset& data, const char* sop_class, const ch
 
 Result<std::string> dicom_bytes(DcmFileFormat& file, const Filler& fill, const std::string& where,
                                 E_TransferSyntax syntax, const char* name) {
+  if (fill.status().bad() && !dcmDataDict.isDictionaryLoaded())
+    return failure(where, "the dictionary of DICOM cannot be read", "Install Debian's package libdcmtk17 anew");
   if (fill.status().bad())
     return failure(where, fmt::format("a value of the {} does not fit into a DICOM file", name),
                    "Shorten the names in its input");

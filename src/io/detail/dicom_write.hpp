@@ -31,6 +31,7 @@ std::string derived_uid(const std::string& content, std::string_view role);
 /// Writes attributes into an item and keeps the first failure.
 class Filler {
  public:
+  Filler();  ///< DCMTK does not write to the terminal from here on
   void text(DcmItem& item, const DcmTagKey& tag, const std::string& value) {
     keep(item.putAndInsertOFStringArray(tag, OFString(value.data(), value.size())));
   }

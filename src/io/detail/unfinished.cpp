@@ -98,8 +98,10 @@ Unfinished::Unfinished(Unfinished&& other) noexcept
 
 Unfinished::~Unfinished() {
   std::error_code ignored;
-  if (!hidden_.empty()) fs::remove_all(hidden_, ignored);
   if (descriptor_ >= 0) ::close(descriptor_);
+  if (hidden_.empty()) return;
+  // A file is removed without opening anything, since that may be what has failed.
+  if (::unlink(hidden_.c_str()) != 0) fs::remove_all(hidden_, ignored);
 }
 
 std::optional<Unfinished> Unfinished::create(const fs::path& path, Kind kind, int& reason) {
@@ -147,7 +149,13 @@ Result<> Unfinished::finish() {
   fs::rename(hidden_, path_, code);
   if (code) return write_error(path_, code.value());
   hidden_.clear();
-  return sync(folder_above(path_));
+  // All of it is on the disk and has its name; only a power cut right now could undo the name.
+  if (const Result<> kept = sync(folder_above(path_)); !kept)
+    remark(
+        fmt::format("{} is complete, but the disk does not confirm its name ({}). Make sure that it is there after "
+                    "a power cut.",
+                    path_.string(), kept.error().what));
+  return Ok{};
 }
 
 }  // namespace stylet::detail

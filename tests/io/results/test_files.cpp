@@ -126,6 +126,51 @@ TEST(Unfinished, is_removed_with_its_object) {
   EXPECT_TRUE(names_in(folder.path()).empty());
 }
 
+/// Lets no further file be opened as long as it exists.
+class NoMoreFiles {
+ public:
+  NoMoreFiles() {
+    EXPECT_EQ(getrlimit(RLIMIT_NOFILE, &before_), 0);
+    const int next = ::dup(STDERR_FILENO);
+    ::close(next);
+    const rlimit none{static_cast<rlim_t>(next), before_.rlim_max};
+    EXPECT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
+  }
+  ~NoMoreFiles() { setrlimit(RLIMIT_NOFILE, &before_); }
+  NoMoreFiles(const NoMoreFiles&) = delete;
+  NoMoreFiles& operator=(const NoMoreFiles&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST(Unfinished, is_removed_where_nothing_more_can_be_opened) {
+  const Folder folder;
+  std::optional made = test::value_of(Unfinished::create(folder / "new", Unfinished::Kind::file));
+  ASSERT_EQ(names_in(folder.path()).size(), 1U);
+  {
+    // Its own descriptor stays open until the end, so that this one is the next.
+    const NoMoreFiles none;
+    made.reset();
+  }
+  EXPECT_TRUE(names_in(folder.path()).empty());
+}
+
+TEST(Unfinished, that_has_its_name_is_finished_with_a_remark_where_the_disk_does_not_confirm_it) {
+  const Folder folder;
+  std::vector<std::string> remarks;
+  receive_remarks([&](const std::string& text) { remarks.push_back(text); });
+  auto made = test::value_of(Unfinished::create(folder / "new", Unfinished::Kind::file));
+  {
+    const NoMoreFiles none;
+    EXPECT_TRUE(made.finish());
+  }
+  receive_remarks({});
+  EXPECT_EQ(names_in(folder.path()), Names{"new"});
+  ASSERT_EQ(remarks.size(), 1U);
+  EXPECT_NE(remarks.front().find("does not confirm its name"), std::string::npos) << remarks.front();
+}
+
 TEST(Folders, are_made_with_those_above_them) {
   const Folder folder;
   EXPECT_TRUE(make_folder(folder / "a/b/c/"));
