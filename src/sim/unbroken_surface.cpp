@@ -51,7 +51,7 @@ std::optional<UnbrokenSurface::Pressed> UnbrokenSurface::pressed_now(const Simul
   const auto name_of = [&](int region) { return mesh.regions[static_cast<std::size_t>(region)]; };
   Pressed pressed{.region = name_of(behind),
                   .past_mm = (step.tip_mm - at_rest).dot(axis),
-                  .force_N = tip->force.dot(axis),
+                  .force_N = (tip->force - tip->lasting).dot(axis),  // what has crept is no force on the surface
                   .at_surface = before != behind,
                   .hand_N = step.force_axial_N,
                   .bow = (step.tip_mm - step.base.origin).norm() / model.scenario().needle.length_mm};

@@ -103,6 +103,22 @@ TEST(UnbrokenSurface, a_needle_that_has_bowed_flat_slides_off_and_is_told_of) {
   EXPECT_EQ(kept.steps.back().tip_state, TipState::air);
 }
 
+/// In tissue that has crept, too: a force above that of the hand would be none that the surface has borne.
+TEST(UnbrokenSurface, the_force_told_is_that_of_the_tip_however_long_the_needle_rests) {
+  Scenario s = with("prostate", 50.0);
+  s.insertions[0].dwell_s = 2.0;
+  const test::Finished done(compiled(s));
+  double most_N = 0.0;
+  for (const Step& step : done.kept.steps) most_N = std::max(most_N, step.force_axial_N);
+  const auto& warnings = done.summary.warnings;
+  const auto said = std::find_if(warnings.begin(), warnings.end(),
+                                 [](const std::string& text) { return test::contains(text, "mm inwards with "); });
+  ASSERT_NE(said, warnings.end());
+  const double told_N = std::stod(said->substr(said->find("mm inwards with ") + 16));
+  EXPECT_GT(told_N, 0.3 * most_N);
+  EXPECT_LT(told_N, most_N);
+}
+
 /// The distance in the warning is the distance of the tip past the rest position of the surface.
 TEST(UnbrokenSurface, the_way_is_no_longer_than_the_base_went_in) {
   Scenario s = with("body", 50.0);
