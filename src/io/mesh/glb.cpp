@@ -15,6 +15,7 @@
 
 #include <cstring>
 #include <fstream>
+#include <new>
 
 namespace stylet::detail {
 
@@ -93,12 +94,17 @@ Result<SurfacesWithNotes> parse_glb(const std::filesystem::path& path, double sc
   vtkNew<vtkGLTFReader> reader;
   reader->SetFileName(path.c_str());
   reader->ApplyDeformationsToGeometryOn();
-  reader->Update();
-  auto* scene = vtkMultiBlockDataSet::SafeDownCast(reader->GetOutput());
-  if (messages->failed() || reader->GetErrorCode() != 0 || scene == nullptr) {
-    return input_error(source, "the GLB scene cannot be read: its data do not fit their description",
-                       "The file is truncated, damaged or compressed (Draco); copy or export it again");
+  const Error unreadable = input_error(source, "the GLB scene cannot be read: its data do not fit their description",
+                                       "The file is truncated, damaged or compressed (Draco); copy or export it again");
+  try {
+    reader->Update();
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception&) {  // VTK takes fields and lengths of the file as they are
+    return unreadable;
   }
+  auto* scene = vtkMultiBlockDataSet::SafeDownCast(reader->GetOutput());
+  if (messages->failed() || reader->GetErrorCode() != 0 || scene == nullptr) return unreadable;
   std::vector<Surface> raw;
   Surface loose;
   loose.name = path.stem().string();

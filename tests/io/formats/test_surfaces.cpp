@@ -200,3 +200,9 @@ TEST(Surfaces, damaged_files_are_refused) {
   expect_refused(read("thing.obj", "v 0 0 0\nv 30 0 0\nv 0 30 0\nf 1 2 9\n"), {"thing.obj"});
   expect_refused(read("thing.obj", "v 0 0 0\nv nan 0 0\nv 0 30 0\nf 1 2 3\n"), {"thing.obj"});
 }
+
+TEST(Surfaces, glb_with_a_word_where_a_number_belongs_is_refused_as_damaged) {
+  std::string bytes = glb(0.03);
+  bytes.replace(bytes.find("[1.0,"), 5, "[\"a\",");
+  expect_refused(read("scene.glb", bytes), {"scene.glb", "do not fit their description"});
+}
