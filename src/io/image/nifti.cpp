@@ -183,7 +183,7 @@ std::string part_of_file(const std::filesystem::path& path, std::uint64_t from, 
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
   if (!file) return {};
   std::string bytes;
-  std::vector<char> buffer(1 << 20);
+  std::vector<char> buffer(1 << 16);
   for (std::uint64_t at = 0; at < end;) {
     const int got = gzread(file.get(), buffer.data(), static_cast<unsigned>(buffer.size()));
     if (got <= 0) return {};
