@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t kLargest = 150000;  // [bytes] larger files make a fuzzer slow
+constexpr std::size_t kLargest = 150000;       // [bytes] larger files make a fuzzer slow
+constexpr std::size_t kLargestHdf5 = 8000000;  // [bytes] larger ones cannot be shrunk (shrink_hdf5.py) in short time
 
 void keep(const detail::ReadingRequest& request) {
   std::string path, arguments = request.arguments;
@@ -27,7 +28,8 @@ void keep(const detail::ReadingRequest& request) {
   arguments.erase(0, sizeof(std::size_t) + path.size());
   const fs::path folder = fs::path(std::getenv("STYLET_FUZZ_SEEDS")) / fuzz::target_of(request.task, arguments);
   for (const std::string& input : fuzz::inputs_of(request.task, path, arguments)) {
-    if (input.empty() || input.size() > kLargest) continue;
+    const std::size_t most = input.starts_with("\x89HDF") ? kLargestHdf5 : kLargest;
+    if (input.empty() || input.size() > most) continue;
     fs::create_directories(folder);
     std::ofstream(folder / std::to_string(std::hash<std::string>()(input)), std::ios::binary) << input;
   }

@@ -2,6 +2,7 @@
 #include "targets.hpp"
 
 #include "reading/tasks.hpp"
+#include "results/stored_run.hpp"
 #include "scenario/toml_document.hpp"
 
 #include <array>
@@ -46,6 +47,7 @@ const std::map<std::string, std::string> kSeeds{
     {"only_patient_in", "parse_rtstruct"}, {"parse_patient_record", "parse_rtplan"},
     {"modality_of_dicom", "parse_rtdose"}, {"is_dicom_seg", "parse_mask-dicom"},
     {"format_of_json", "parse_plan_text"}, {"is_implant_file", "parse_implant_file"},
+    {"parse_run_heads", "parse_run_file"},
 };
 
 std::string name_of(const Kind& kind) { return std::string(kind.task) + "-" + kind.name; }
@@ -72,12 +74,13 @@ std::string arguments_of(const Target& target, std::string_view input) {
   FileKind kind = target.kind;
   double scale = 1.0;
   int volume = 0;
-  std::vector<std::string> skip;
+  std::vector<std::string> skip, others;
   std::string text;
   if (target.task == detail::kRtstruct.name || target.task == detail::kContourJson.name) wire(skip);
   if (target.task == detail::kMask.name) wire(kind, volume, skip);
   if (target.task == detail::kTetMesh.name) wire(kind, scale, text);
   if (target.task == detail::kSurfaces.name) wire(kind, scale);
+  if (target.task == results::kRunHeads.name) wire(others);
   if (target.task == detail::kToml.name) {
     text = input;
     wire(text);
