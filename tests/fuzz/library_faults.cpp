@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "library_faults.hpp"
+
+#include <dlfcn.h>
+#include <execinfo.h>
+#include <fcntl.h>
+#include <sanitizer/asan_interface.h>
+#include <ucontext.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+namespace stylet::fuzz {
+
+sigjmp_buf after_known_fault;
+
+namespace {
+
+constexpr std::array kSignals{SIGSEGV, SIGBUS, SIGFPE, SIGABRT};
+std::array<struct sigaction, 65> before{};  ///< what the sanitizer and libFuzzer do at each signal
+std::string known_places;                   ///< with a blank before and behind each
+bool is_signal = false;                     ///< a signal is reported, after which the sanitizer ends the program
+
+bool is_known(std::string_view place) { return known_places.find(" " + std::string(place) + " ") != std::string::npos; }
+
+std::string_view name_of(std::string_view path) { return path.substr(path.rfind('/') + 1); }
+
+/// Libraries of the language, which only do what they are told to.
+bool is_of_language(std::string_view library) {
+  return library.starts_with("libc.") || library.starts_with("libstdc++.") || library.starts_with("libm.") ||
+         library.starts_with("libgcc_s.") || library.starts_with("ld-linux");
+}
+
+/// Whether a place in code, or that before it, is a known one. The second for places to which a call returns.
+bool is_known_place(const Dl_info& library, const void* address) {
+  const auto offset = reinterpret_cast<std::uintptr_t>(address) - reinterpret_cast<std::uintptr_t>(library.dli_fbase);
+  std::array<char, 256> place{};
+  for (const std::uintptr_t at : {offset, offset - 1}) {
+    const std::string_view name = name_of(library.dli_fname);
+    std::snprintf(place.data(), place.size(), "%.*s+0x%lx", static_cast<int>(name.size()), name.data(), at);
+    if (is_known(place.data())) return true;
+  }
+  return false;
+}
+
+/// Whether the innermost function on the stack that is none of the language is at a known place.
+bool is_known_stack(const void* fault) {
+  std::array<void*, 64> stack{};
+  const int depth = ::backtrace(stack.data(), static_cast<int>(stack.size()));
+  void* const* const end = stack.data() + depth;
+  // Frames of the handler come first. The signal's own frame has the address of the fault.
+  for (void* const* at = std::find<void* const*>(stack.data(), end, fault); at != end; ++at) {
+    Dl_info library{};
+    if (::dladdr(*at, &library) == 0 || library.dli_fname == nullptr) return false;
+    if (!is_of_language(name_of(library.dli_fname))) return is_known_place(library, *at);
+  }
+  return false;
+}
+
+/// Adds a byte to a file that scripts/fuzz measures.
+void count_one() {
+  const int file = ::open("known", O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
+  if (file < 0 || ::write(file, "!", 1) != 1) return;
+  ::close(file);
+}
+
+void at_signal(int signal, siginfo_t* info, void* context) {
+  const auto* const machine = static_cast<ucontext_t*>(context);
+  if (is_known_stack(reinterpret_cast<void*>(machine->uc_mcontext.gregs[REG_RIP]))) {
+    count_one();
+    siglongjmp(after_known_fault, 1);
+  }
+  is_signal = true;
+  const struct sigaction& theirs = before[static_cast<std::size_t>(signal)];
+  ::sigaction(signal, &theirs, nullptr);
+  theirs.sa_sigaction(signal, info, context);
+}
+
+/// The place in a line of a stack, "#1 0x7f00 in name (/lib/libvtkIOPLY-9.1.so.1+0x100c4) (BuildId: …)".
+std::string_view place_in(std::string_view line) {
+  const auto start = line.find(" (/"), end = line.find(')', start);
+  return start == std::string_view::npos ? std::string_view{} : name_of(line.substr(start + 2, end - start - 2));
+}
+
+/// A fault that the sanitizer finds in its own version of a function of the language is that of the caller. A write has
+/// happened when the execution goes on, so it ends the fuzzer even if it is known.
+void at_report(const char* report) {
+  if (is_signal) return;
+  const std::string_view text(report);
+  const auto caller = text.find("#1 ");
+  const bool harmless = text.find("WRITE of size") == std::string_view::npos;
+  const auto end = std::min(text.find('\n', caller), text.size());
+  if (caller != std::string_view::npos && harmless && is_known(place_in(text.substr(caller, end - caller))))
+    return count_one();
+  ::sigaction(SIGABRT, &before[SIGABRT], nullptr);
+  std::abort();
+}
+
+}  // namespace
+
+void pass_over_known_faults() {
+  const char* const places = std::getenv("STYLET_FUZZ_KNOWN");
+  known_places = " " + std::string(places != nullptr ? places : "") + " ";
+  std::array<void*, 1> first{};
+  ::backtrace(first.data(), 1);  // loads what it needs, which a handler should not
+  for (const int signal : kSignals) {
+    struct sigaction own {};
+    own.sa_sigaction = at_signal;
+    own.sa_flags = SA_SIGINFO | SA_ONSTACK | SA_NODEFER;
+    ::sigaction(signal, &own, &before[static_cast<std::size_t>(signal)]);
+  }
+  __asan_set_error_report_callback(at_report);
+}
+
+}  // namespace stylet::fuzz

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <csetjmp>
+
+/// Faults of libraries that are known already. The first of each kind ends the fuzzer, with a report; later ones end
+/// the execution only, since a start costs as much as hundreds of executions. The reading program is ended by all of
+/// them, which its caller answers with an error.
+namespace stylet::fuzz {
+
+/// Takes the signals SIGSEGV, SIGBUS, SIGFPE and SIGABRT over from libFuzzer and the address sanitizer, and looks at
+/// the sanitizer's reports. The places of known faults stand in STYLET_FUZZ_KNOWN, separated by blanks:
+/// "libvtkIOXML-9.1.so.1+0x98753". Each of them that happens is counted as a byte of the file "known" in this folder.
+void pass_over_known_faults();
+
+/// Where an execution that a known fault ends goes on. To be set by sigsetjmp() before each.
+extern sigjmp_buf after_known_fault;
+
+}  // namespace stylet::fuzz
