@@ -143,9 +143,8 @@ NeedleOutcome NeedleOnItsWay::outcome(bool has_gland) {
     out.warnings.push_back(fmt::format("{} {}: {}", catheter ? "Catheter" : "Needle", load_.name, text));
   };
   for (const std::string& harm : harms(needle.events)) warn(harm);
-  for (const auto& warning : {unbroken_.warning(), far_gland_.warning()}) {
-    if (warning) warn(*warning);
-  }
+  for (const std::string& warning : unbroken_.warnings()) warn(warning);
+  if (auto warning = far_gland_.warning()) warn(*warning);
   if (without_balance_ > 0) {
     warn(fmt::format("In {} of {} steps no balance of needle and tissue was found; a smaller run.dt_ms helps.",
                      without_balance_, needle.steps));

@@ -50,7 +50,7 @@ void StepRemarks::add(const Simulation& simulation) {
 
 std::vector<std::string> StepRemarks::sentences() const {
   std::vector<std::string> remarks = harms(entered_);
-  if (auto warning = unbroken_.warning()) remarks.push_back(std::move(*warning));
+  for (std::string& warning : unbroken_.warnings()) remarks.push_back(std::move(warning));
   if (without_balance_ > 0) {
     remarks.push_back(
         fmt::format("In {} of {} steps no balance of needle and tissue was found; a smaller run.dt_ms helps.",

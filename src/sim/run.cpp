@@ -168,9 +168,8 @@ class Runner {
     };
     if (auto done = drive(simulation_, motion, motion.count, watch); !done) return done;
     if (gland) keep(gland->result());
-    for (auto warning : {unbroken.warning(), far_gland.warning()}) {
-      if (warning) summary_.warnings.push_back(*std::move(warning));
-    }
+    for (std::string& warning : unbroken.warnings()) summary_.warnings.push_back(std::move(warning));
+    if (auto warning = far_gland.warning()) summary_.warnings.push_back(std::move(*warning));
     return take_frame("after");
   }
 

@@ -15,16 +15,23 @@ constexpr double kBeside_mm = 1e-3;  ///< a point this far from a surface is saf
 }  // namespace
 
 void UnbrokenSurface::add(const Simulation& simulation) {
+  const Step& step = simulation.last_step();
+  deepest_mm_ = std::max(deepest_mm_, step.base_depth_mm);
   for (const Event& event : simulation.new_events()) {
+    if (event.kind == EventKind::puncture && hardest_)
+      broken_.push_back({event.region, event.depth_mm, event.depth_mm - easy_mm_});
     if (event.kind == EventKind::puncture || event.kind == EventKind::region_entered) forget();
     if (event.kind == EventKind::grazed && buckled_) slid_off_mm_ = event.depth_mm;
   }
-  if (simulation.last_step().tip_state == TipState::cutting) forget();
-  if (simulation.last_step().tip_state != TipState::pressing) return;
+  if (step.tip_state == TipState::cutting) forget();
+  if (step.tip_state != TipState::pressing) return;
   const auto now = pressed_now(simulation);
   if (!now) return;
   if (now->bow < kBuckled && (!buckled_ || now->hand_N > buckled_->hand_N)) buckled_ = now;
   if (!furthest_ || now->past_mm > furthest_->past_mm) furthest_ = now;
+  if (hardest_ && now->force_N <= hardest_->force_N) return;
+  if (!hardest_ || now->force_N < (1.0 - kClose) * now->needed_N) easy_mm_ = step.base_depth_mm;
+  hardest_ = now;
 }
 
 std::optional<UnbrokenSurface::Pressed> UnbrokenSurface::pressed_now(const Simulation& simulation) {
@@ -67,13 +74,35 @@ std::optional<UnbrokenSurface::Pressed> UnbrokenSurface::pressed_now(const Simul
 
 void UnbrokenSurface::forget() {
   furthest_.reset();
+  hardest_.reset();
   buckled_.reset();
   slid_off_mm_.reset();
 }
 
-std::optional<std::string> UnbrokenSurface::warning() const {
+std::vector<std::string> UnbrokenSurface::warnings() const {
+  std::vector<std::string> result;
+  for (const Broken& broken : broken_) {
+    const double spare_mm = deepest_mm_ - broken.depth_mm;
+    if (spare_mm >= broken.way_mm) continue;
+    result.push_back(
+        fmt::format("The surface of the {} broke only {:.1f} mm before the needle was at its depth, and would not have "
+                    "broken if it bore {:g} % more. With another time step or mesh the needle may stay outside the {}.",
+                    broken.region, spare_mm, 100.0 * kClose, broken.region));
+  }
+  if (auto text = held()) result.push_back(*std::move(text));
+  if (hardest_ && hardest_->at_surface && hardest_->force_N >= (1.0 - kClose) * hardest_->needed_N) {
+    result.push_back(fmt::format(
+        "The tip pressed the surface of the {} with up to {:.2f} N, and {:.2f} N break it. With another time step or "
+        "mesh the needle may enter the {}.",
+        hardest_->region, hardest_->force_N, hardest_->needed_N, hardest_->region));
+  }
+  return result;
+}
+
+std::optional<std::string> UnbrokenSurface::held() const {
   const bool pressed = furthest_ && furthest_->past_mm > kFar_mm;
-  if (!buckled_) return pressed ? std::optional(text_of(*furthest_)) : std::nullopt;
+  const auto text = [&] { return text_of(*furthest_, hardest_->force_N); };
+  if (!buckled_) return pressed ? std::optional(text()) : std::nullopt;
   std::string cure;
   if (slid_off_mm_) {
     cure = fmt::format(
@@ -85,8 +114,7 @@ std::optional<std::string> UnbrokenSurface::warning() const {
       "Take a thicker or shorter needle, leave the stylet in it (needle.stylet = \"in\"), or hold it in a template "
       "(template.guide = true) whose holes are nearer to the skin (template.distance_mm).";
   if (pressed) {
-    return fmt::format("{} The needle bowed out under {:.2f} N: it buckled. {}", text_of(*furthest_), buckled_->hand_N,
-                       cure);
+    return fmt::format("{} The needle bowed out under {:.2f} N: it buckled. {}", text(), buckled_->hand_N, cure);
   }
   return fmt::format(
       "The needle bowed out under {:.2f} N instead of {} the {}, for which {:.2f} N are needed: it buckled. {}",
@@ -94,20 +122,21 @@ std::optional<std::string> UnbrokenSurface::warning() const {
       buckled_->needed_N, cure);
 }
 
-std::string UnbrokenSurface::text_of(const Pressed& p) {
+std::string UnbrokenSurface::text_of(const Pressed& p, double most_N) {
   const std::string key = fmt::format("tissue.{}.{}", p.owner, p.by_cutting ? "cutting_N" : "puncture_N");
   if (!p.at_surface) {
     return fmt::format(
-        "The tip pressed the tissue of the {} {:.1f} mm ahead of itself with {:.2f} N, but {:.2f} N are needed to cut "
-        "it ({}, see stylet insert --print-tissues): the needle did not go on in the {}. Lower {}, or raise young_kPa "
+        "The tip pressed the tissue of the {} {:.1f} mm ahead of itself with up to {:.2f} N, but {:.2f} N are needed "
+        "to cut it ({}, see stylet insert --print-tissues): the needle did not go on in the {}. Lower {}, or raise young_kPa "
         "or stiffening of this tissue.",
-        p.region, p.past_mm, p.force_N, p.needed_N, key, p.region, key);
+        p.region, p.past_mm, most_N, p.needed_N, key, p.region, key);
   }
   return fmt::format(
-      "The tip pressed the surface of the {} {:.1f} mm inwards with {:.2f} N, but {:.2f} N are needed to {} ({}, see "
+      "The tip pressed the surface of the {} {:.1f} mm inwards with up to {:.2f} N, but {:.2f} N are needed to {} ({}, "
+      "see "
       "stylet insert --print-tissues): the needle did not enter the {}. Lower {}, or raise young_kPa or stiffening on "
       "either side of the surface.",
-      p.region, p.past_mm, p.force_N, p.needed_N, p.by_cutting ? "cut into the tissue behind it" : "break it", key,
+      p.region, p.past_mm, most_N, p.needed_N, p.by_cutting ? "cut into the tissue behind it" : "break it", key,
       p.region, key);
 }
 

@@ -112,11 +112,33 @@ TEST(UnbrokenSurface, the_force_told_is_that_of_the_tip_however_long_the_needle_
   for (const Step& step : done.kept.steps) most_N = std::max(most_N, step.force_axial_N);
   const auto& warnings = done.summary.warnings;
   const auto said = std::find_if(warnings.begin(), warnings.end(),
-                                 [](const std::string& text) { return test::contains(text, "mm inwards with "); });
+                                 [](const std::string& text) { return test::contains(text, "mm inwards with up to "); });
   ASSERT_NE(said, warnings.end());
-  const double told_N = std::stod(said->substr(said->find("mm inwards with ") + 16));
+  const double told_N = std::stod(said->substr(said->find("mm inwards with up to ") + 22));
   EXPECT_GT(told_N, 0.3 * most_N);
   EXPECT_LT(told_N, most_N);
+}
+
+/// The force that the tip reaches at the deepest point decides whether a capsule breaks: one that is a little stronger or
+/// weaker is a close call, and one that is much stronger or weaker is none.
+TEST(UnbrokenSurface, a_capsule_that_was_about_to_break_or_broke_at_the_last_moment_is_told_of) {
+  Scenario s = with("prostate", 50.0);
+  s.insertions[0].depth_mm = 28.0;
+  const std::string held = warnings_of(s);
+  const std::string before = "mm inwards with up to ";
+  ASSERT_TRUE(test::contains(held, before)) << held;
+  const double reached_N = std::stod(held.substr(held.find(before) + before.size()));
+  const auto said = [&](double share) {
+    s.tissue["prostate"].puncture_N = share * reached_N;
+    return warnings_of(s);
+  };
+  const std::string may_enter = "With another time step or mesh the needle may enter the prostate";
+  const std::string may_stay = "With another time step or mesh the needle may stay outside the prostate";
+  EXPECT_FALSE(test::contains(said(1.2), "With another"));
+  EXPECT_SAYS(said(1.04), may_enter);
+  EXPECT_SAYS(said(0.98), may_stay);
+  EXPECT_FALSE(test::contains(said(0.98), may_enter));
+  EXPECT_FALSE(test::contains(said(0.8), "With another"));
 }
 
 /// The distance in the warning is the distance of the tip past the rest position of the surface.
