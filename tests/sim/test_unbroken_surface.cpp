@@ -111,16 +111,17 @@ TEST(UnbrokenSurface, the_force_told_is_that_of_the_tip_however_long_the_needle_
   double most_N = 0.0;
   for (const Step& step : done.kept.steps) most_N = std::max(most_N, step.force_axial_N);
   const auto& warnings = done.summary.warnings;
-  const auto said = std::find_if(warnings.begin(), warnings.end(),
-                                 [](const std::string& text) { return test::contains(text, "mm inwards with up to "); });
+  const auto said = std::find_if(warnings.begin(), warnings.end(), [](const std::string& text) {
+    return test::contains(text, "mm inwards with up to ");
+  });
   ASSERT_NE(said, warnings.end());
   const double told_N = std::stod(said->substr(said->find("mm inwards with up to ") + 22));
   EXPECT_GT(told_N, 0.3 * most_N);
   EXPECT_LT(told_N, most_N);
 }
 
-/// The force that the tip reaches at the deepest point decides whether a capsule breaks: one that is a little stronger or
-/// weaker is a close call, and one that is much stronger or weaker is none.
+/// The force that the tip reaches at the deepest point decides whether a capsule breaks: one that is a little stronger
+/// or weaker is a close call, and one that is much stronger or weaker is none.
 TEST(UnbrokenSurface, a_capsule_that_was_about_to_break_or_broke_at_the_last_moment_is_told_of) {
   Scenario s = with("prostate", 50.0);
   s.insertions[0].depth_mm = 28.0;
@@ -148,6 +149,28 @@ TEST(UnbrokenSurface, the_way_is_no_longer_than_the_base_went_in) {
   EXPECT_FALSE(test::contains(warnings_of(s), "The tip pressed"));
   s.insertions[0].depth_mm = 12.0;
   EXPECT_SAYS(warnings_of(s), "pressed the surface of the body 1");
+}
+
+/// The tissue that the tip has pushed ahead springs back at once, so that with a long step much is cut in one piece.
+/// Its direction is that of the tissue behind the surface: the soft tissue before it was squeezed, and leads aside.
+TEST(UnbrokenSurface, the_track_behind_a_capsule_in_fat_does_not_depend_on_the_time_step) {
+  TetMesh mesh = box_mesh({-30, -30, 0}, {30, 30, 60}, {10, 10, 10});
+  assign_regions(mesh, {"body", "prostate", "periprostatic_fat"}, [](const Vec3& x) {
+    const double off = (x - Vec3(0, 5, 32)).norm();
+    return off < 16.0 ? 1 : off < 23.0 ? 2 : 0;
+  });
+  std::vector<Vec3> tips;
+  for (const double dt_ms : {0.5, 4.0}) {
+    Scenario s = box_scenario();
+    s.insertions[0].depth_mm = 45.0;
+    s.insertions[0].retract = false;
+    s.needle.bevel_deg = 20.0;
+    s.run.dt_ms = dt_ms;
+    const test::Finished done(compiled(s, mesh));
+    EXPECT_NE(done.event(EventKind::puncture, "prostate"), nullptr);
+    tips.push_back(done.kept.steps.back().tip_mm);
+  }
+  EXPECT_LT((tips[0] - tips[1]).norm(), 0.3) << (tips[1] - tips[0]).transpose();
 }
 
 }  // namespace

@@ -366,6 +366,7 @@ bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
       const double hand_N =
           parts_.hand.when_tip_reached(tip.ahead.limit(), tip.history.start, parts_.contacts.own_forces());
       parts_.path.break_surface(hand_N, step);
+      tip.aim(parts_.contacts.forces());
       before_break = all;
       search_.forget();
       iteration = 0;  // the search for the next balance starts here

@@ -226,6 +226,7 @@ bool StaggeredBalance::solve(double h, Effort& /*effort*/, Step& step) {
       if (!tip.breaks_surface()) return false;
       parts_.path.break_surface(
           parts_.hand.when_tip_reached(tip.ahead.limit(), tip.history.start, parts_.contacts.forces()), step);
+      tip.aim(parts_.contacts.forces());
       bent_.restart();
       continue;
     }

@@ -58,6 +58,10 @@ class TipContact {
 
   /// Begins a sub-step's balance: stores the place of the tip, and aims the cut.
   void begin(const ContactForces& forces);
+  /// Chooses the direction of the cut by the shape of the needle and by the deformation of the tissue at the tip.
+  /// Behind a surface that breaks it is chosen anew: the tissue before the surface may be softer and have been
+  /// squeezed.
+  void aim(const ContactForces& forces);
   /// Whether the present force exceeds the strength of the surface ahead. To be called for a balance only: a broken
   /// surface does not heal, and the forces of an iterate are not yet forces on the tissue.
   [[nodiscard]] bool breaks_surface() const;
@@ -76,7 +80,6 @@ class TipContact {
   [[nodiscard]] Vec3 bevel_force() const;
 
  private:
-  void aim(const ContactForces& forces);
   [[nodiscard]] Vec3 lead_of_bevel(const Vec3& tangent) const;
   [[nodiscard]] Vec3 tangent() const { return needle_.tangent(needle_.length()); }
 
