@@ -127,7 +127,8 @@ std::string UnbrokenSurface::text_of(const Pressed& p, double most_N) {
   if (!p.at_surface) {
     return fmt::format(
         "The tip pressed the tissue of the {} {:.1f} mm ahead of itself with up to {:.2f} N, but {:.2f} N are needed "
-        "to cut it ({}, see stylet insert --print-tissues): the needle did not go on in the {}. Lower {}, or raise young_kPa "
+        "to cut it ({}, see stylet insert --print-tissues): the needle did not go on in the {}. Lower {}, or raise "
+        "young_kPa "
         "or stiffening of this tissue.",
         p.region, p.past_mm, most_N, p.needed_N, key, p.region, key);
   }
