@@ -107,7 +107,7 @@ test('a click on another hole puts the needle there', async () => {
 test('the insertion can be replayed, its time slider dragged, and its curve saved', async () => {
   await page.getByRole('button', { name: 'Recordings' }).click();
   await page.locator('dialog tr').first().waitFor();
-  const rows = page.locator('dialog tr');
+  const rows = page.locator('dialog tr').filter({ has: page.getByRole('button', { name: 'Replay' }) });
   assert.equal(await rows.count(), 2, 'one recording for each hole');
   await rows.filter({ hasText: 'e3.5' }).getByRole('button', { name: 'Replay' }).click();
   await page.locator('#replay').waitFor();
