@@ -24,8 +24,8 @@ TEST(Vtu, the_same_mesh_gives_the_same_bytes_and_says_frame_and_unit) {
   ASSERT_TRUE(write_vtu(two_region_box(), folder / "b.vtu").ok());
   const std::string text = content_of(folder / "a.vtu");
   EXPECT_EQ(text, content_of(folder / "b.vtu"));
-  for (const char* word : {"vtkZLibDataCompressor", "format=\"appended\"", "Name=\"region\"", "Name=\"region_names\"",
-                           "Name=\"SPACE\"", "Name=\"UNITS\""}) {
+  for (const char* word :
+       {"format=\"appended\"", "Name=\"region\"", "Name=\"region_names\"", "Name=\"SPACE\"", "Name=\"UNITS\""}) {
     EXPECT_NE(text.find(word), std::string::npos) << word;
   }
 }
