@@ -14,8 +14,10 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -195,10 +197,32 @@ std::string part_of_file(const std::filesystem::path& path, std::uint64_t from, 
   return bytes;
 }
 
+/// Error if the header's code of the voxel type is in no standard: VTK looks for such a code beyond the end of its
+/// table.
+Result<> check_voxel_type(const std::filesystem::path& path) {
+  constexpr std::size_t kHeader = 348;
+  const std::string head = part_of_file(path, 0, kHeader, kHeader);
+  if (head.size() < kHeader) return Ok{};  // VTK refuses it
+  const auto number = [&]<class T>(T value, std::size_t at) {
+    std::memcpy(&value, head.data() + at, sizeof value);
+    return value;
+  };
+  const std::string_view magic = std::string_view(head).substr(4, 3);
+  const bool second = magic == "n+2" || magic == "ni2";
+  auto code = number(std::uint16_t{}, second ? 12 : 70);
+  if (number(std::uint32_t{}, 0) != (second ? 540 : 348)) code = static_cast<std::uint16_t>(code << 8U | code >> 8U);
+  constexpr std::array kOfComponents{32, 128, 1792, 2304};
+  if (std::find(kOfComponents.begin(), kOfComponents.end(), code) != kOfComponents.end()) return Ok{};
+  const Result<VoxelType> type = nifti_voxel_type(code, path.string());
+  if (!type) return type.error();
+  return Ok{};
+}
+
 }  // namespace
 
 Result<LabelImage> parse_nifti(const std::filesystem::path& path, const MaskReadOptions& options) {
   const std::string source = path.string();
+  if (Result<> type = check_voxel_type(path); !type) return type.error();
   const auto messages = VtkMessages::install();
   vtkNew<vtkNIFTIImageReader> reader;
   reader->SetFileName(path.c_str());

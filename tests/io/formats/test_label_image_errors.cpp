@@ -203,6 +203,15 @@ TEST(LabelImageErrors, colour_images_are_refused) {
   expect_refused(read_mask("mask.nii", bytes), {"3 components"});
 }
 
+TEST(LabelImageErrors, nifti_voxel_types_of_no_standard_are_refused) {
+  for (const int code : {0, 3, 26989}) {
+    std::string bytes = nifti(Mask());
+    poke<std::int16_t>(bytes, 70, static_cast<std::int16_t>(code));
+    const std::string said = "the voxel type (code " + std::to_string(code) + ")";
+    expect_refused(read_mask("mask.nii", bytes), {said.c_str()});
+  }
+}
+
 TEST(LabelImageErrors, other_files_are_named) {
   const Folder folder;
   expect_refused(read_label_image(write_file(folder / "a.nii", "{\"format\": 1}")), {"a JSON file", "a label mask"});
