@@ -12,6 +12,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <initializer_list>
 #include <iterator>
@@ -142,6 +143,14 @@ Result<Announced> announced_in(const fs::path& path) {
                          "Copy or export it again");
     }
     const std::string value = trimmed(line->text.substr(separator + 1));
+    // MetaIO copies these texts into 255 bytes each.
+    constexpr std::array<std::string_view, 4> kShort{"Comment", "Name", "ObjectType", "ObjectSubType"};
+    constexpr std::size_t kRoom = 254;
+    if (value.size() > kRoom && std::find(kShort.begin(), kShort.end(), key) != kShort.end()) {
+      return input_error(fmt::format("{}, line {}", source, number),
+                         fmt::format("{} has {} characters, at most {} are expected", key, value.size(), kRoom),
+                         "Shorten it, or save the image again without it");
+    }
     found.keys.insert(key);
     if (key == "NDims") {
       found.dimensions = to_number(value).value_or(0);
