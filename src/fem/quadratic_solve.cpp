@@ -13,8 +13,8 @@
 namespace stylet::detail {
 namespace {
 
-/// Tolerance: norm of the residual / norm of the load. The motion of a target, an integral of the solution, is then
-/// exact to 1e-8; raised, it is computed sooner.
+/// Tolerance: norm of the residual / norm of the load. The motion of a target is then that of the factor of K to
+/// 1e-7 (VolumeResponse.on_quadratic_elements_*); raised, it is computed sooner.
 constexpr double kTolerance = 1e-7;
 /// A correction, which is solved for in single precision, leaves this part of the residual or what the tolerance
 /// allows. Lowered, rounding takes part in it.

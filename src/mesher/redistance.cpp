@@ -39,7 +39,7 @@ std::vector<float> distance_beside_surface(const GridShape& g) {
   return d;
 }
 
-/// What the eikonal equation has along one axis.
+/// The terms of the eikonal equation along one axis of the grid.
 struct Along {
   double a;       ///< [mm] smallest distance of the two neighbours
   double h;       ///< [mm] grid spacing

@@ -11,7 +11,8 @@ namespace {
 
 constexpr double kDegreesPerRad = 180.0 / std::numbers::pi;
 
-/// What glands of patients were seen to do, with the source as the warning names it (docs/validation.md, sources).
+/// The largest turn and the largest shift of a gland without a warning, each with the motion of patients' glands that
+/// the warning names. docs/validation.md has the sources.
 constexpr double kTurn_deg = 15.0;
 constexpr const char* kTurns = "turn (up to about 14°, Lagerburg 2005)";
 constexpr double kShift_mm = 21.6;

@@ -56,8 +56,9 @@ class Simulation {
     return {events_.data(), static_cast<std::size_t>(event_count_)};
   }
 
-  /// What is left of the balance of forces on the tissue: of supports and contacts. The hand's force is not part of it,
-  /// because it is computed as the sum of the forces of contacts and guide and would always balance them.
+  /// The residual of the balance of forces on the tissue: the sum of the forces of supports and contacts. The hand's
+  /// force is not part of this sum, because it is computed as the sum of the forces of contacts and guide and would
+  /// always balance them.
   struct Balance {
     double force_N = 0.0;   ///< |sum of forces|
     double torque_N = 0.0;  ///< |sum of moments about the entry| / 100 mm

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writer of VTU files with VTK: appended raw data; frame and unit are field data. Fields are written with single
 // precision and nothing is compressed, because a run writes a file for each of its frames: zlib would take longer than
-// all the rest, and makes such files smaller by a third only.
+// all the rest.
 #include "stylet/io/files.hpp"
 #include "stylet/io/mesh_io.hpp"
 
