@@ -3,6 +3,7 @@
 
 #include "coupling/balance/coupled_balance.hpp"
 #include "coupling/balance/needle_bundle.hpp"
+#include "coupling/balance/resting_hold.hpp"
 #include "coupling/needle_in_tissue.hpp"
 #include "coupling/paper/staggered_balance.hpp"
 #include "coupling/room_watch.hpp"
@@ -94,7 +95,10 @@ struct Insertion::Parts {
   /// @return false where the needle stays in the air
   bool enter(Step& step);
   bool find_balance(double h, bool may_give_up, Step& step);
+  bool balance_alone(const Pose& from, const Pose& to, double h, Step& step);
+  double end_balance(double h, bool on_bone, bool found, Step& step);
   bool move_on(const Pose& from, const Pose& to, double h, int level, Step& step);
+  void end_move(double h, Step& step);
   void move_in_parts(const Pose& from, const Pose& to, double h, int level, Step& step);
   void finish_insertion(Step& step);
   void settle_in_air(Step& step);
@@ -123,6 +127,11 @@ struct Insertion::Parts {
   std::unique_ptr<NeedleBundle> bundle;
   std::unique_ptr<Predictor> predictor;
   std::unique_ptr<BalanceSolver> balance;
+  // Where many contacts rest, they follow a needle that is balanced alone.
+  std::unique_ptr<Predictor> predictor_alone;
+  std::unique_ptr<CoupledBalance> alone;
+  std::unique_ptr<RestingHold> hold;
+  bool was_alone = false;  ///< whether the last balance was that of the held needle alone
   RoomWatch room;
   int first_level = 0;    ///< parts of this level are tried first in the next sub-step; 0: all of it
   int deepest_level = 0;  ///< the deepest level of this sub-step
@@ -166,6 +175,9 @@ void Insertion::Parts::make_balance() {
     if (at_rest.empty() || at_rest.back().needle != contact.needle) at_rest.push_back({(*of)->needle.get(), 0});
     ++at_rest.back().contacts;
   }
+  hold.reset();
+  alone.reset();
+  was_alone = false;
   balance.reset();
   bundle.reset();
   if (!at_rest.empty()) bundle = std::make_unique<NeedleBundle>(*held->needle, at_rest, settings.capacity + 1);
@@ -179,7 +191,19 @@ void Insertion::Parts::make_balance() {
   if (settings.solver == CouplingSettings::Solver::staggered) {
     balance = std::make_unique<paper::StaggeredBalance>(parts);
   } else {
-    balance = std::make_unique<CoupledBalance>(parts);
+    auto whole = std::make_unique<CoupledBalance>(parts);
+    if (held->shaft.others() >= static_cast<std::size_t>(settings.follow_from)) {
+      predictor_alone = std::make_unique<Predictor>(held->needle->state().size());
+      const BalanceParts own{.settings = settings,
+                             .contacts = {*held->needle, tissue, held->path.tip, held->shaft, nullptr, true},
+                             .path = held->path,
+                             .hand = held->hand,
+                             .predictor = *predictor_alone,
+                             .most_contacts = settings.capacity};
+      alone = std::make_unique<CoupledBalance>(own);
+      hold = std::make_unique<RestingHold>(parts.contacts, *whole, settings.capacity + 1, most_points(settings) + 1);
+    }
+    balance = std::move(whole);
   }
 }
 
@@ -258,7 +282,9 @@ Result<> Insertion::Parts::take_up(int number) {
   if (!rest_tip())
     return failure("Insertion::take_up", "there is no room for the contact of a tip that comes to rest",
                    "Raise CouplingSettings::capacity");
-  balance.reset();  // it refers to the needle that comes to rest
+  hold.reset();  // they refer to the needle that comes to rest
+  alone.reset();
+  balance.reset();
   next->shaft.take_over(held->shaft);
   held = next;
   raise_tip();
@@ -287,6 +313,10 @@ void Insertion::Parts::finish_insertion(Step& step) {
   held->path.finish();
   held->shaft.clear();
   balance->release();
+  if (hold) {
+    hold->forget();
+    alone->release();
+  }
   held->damping.forget();
   balance->damp(0.0);
   if (!others_rest()) tissue.let_go();
@@ -298,6 +328,7 @@ void Insertion::Parts::finish_insertion(Step& step) {
 void Insertion::Parts::place(const Pose& pose) {
   Step unused;
   if (!held->path.in_air()) finish_insertion(unused);
+  if (hold) hold->forget();
   if (tissue.is_relaxing()) tissue.reset();
   room.forget();
   balance->forget_tangent();
@@ -339,13 +370,62 @@ bool Insertion::Parts::find_balance(double h, bool may_give_up, Step& step) {
     step.flags = flags_before;
     return false;
   }
+  const double cut = end_balance(h, on_bone, found, step);
+  step.flags |= flags_before;
+  predictor->end(cut, steady, needles_in_balance(), tip, held->shaft.all());
+  if (hold) hold->balanced(h, found);
+  return true;
+}
+
+/// Lets the track grow by the cut of a balance. @return its length [mm]
+double Insertion::Parts::end_balance(double h, bool on_bone, bool found, Step& step) {
+  TipContact& tip = held->path.tip;
   const double cut = tip.touches() ? tip.cut.advance() : 0.0;
   tip.cut_mm_per_s = cut / h;
   held->path.commit(step);
   held->damping.end(h, on_bone, found);
+  return cut;
+}
+
+/// Balances the held needle alone, while those at rest follow.
+/// @return false, with nothing changed but a surface that broke, where all needles have to be balanced together
+bool Insertion::Parts::balance_alone(const Pose& from, const Pose& to, double h, Step& step) {
+  if (!hold || !hold->begin(h)) return false;
+  TipContact& tip = held->path.tip;
+  const bool on_bone = tip.is_on_bone();
+  if (!std::exchange(was_alone, true)) {
+    alone->forget_tangent();
+    balance->forget_tangent();
+    predictor_alone->interrupt();
+  }
+  alone->damp(held->damping.in_step(h, on_bone, false) / h);
+  alone->begin();
+  predictor_alone->begin(from, to, *held->needle, tip, held->shaft.own());
+  alone->base_moved(predictor_alone->last_motion());
+  const unsigned flags_before = std::exchange(step.flags, 0u);
+  auto followed = RestingHold::Followed::again;
+  bool steady = false;
+  while (followed == RestingHold::Followed::again) {
+    tissue.hold_by(hold.get(), hold->points());
+    Effort effort(1 + static_cast<int>(held->shaft.own().size()));
+    steady = alone->solve(h, effort, step);
+    tissue.hold_by(nullptr);
+    const bool found = (step.flags & (Step::not_converged | Step::contact_cycling)) == 0;
+    followed = found ? hold->follow(step) : RestingHold::Followed::no;
+    if (followed == RestingHold::Followed::done) break;
+    predictor_alone->go_back(*held->needle, tip, held->shaft.own());
+    if (followed == RestingHold::Followed::again) hold->start_again();
+  }
+  const bool found = followed == RestingHold::Followed::done;
+  if (found) {
+    const double cut = end_balance(h, on_bone, true, step);
+    predictor_alone->end(cut, steady, *held->needle, tip, held->shaft.own());
+  } else {
+    hold->take_back();
+    step.flags = 0;
+  }
   step.flags |= flags_before;
-  predictor->end(cut, steady, needles_in_balance(), tip, held->shaft.all());
-  return true;
+  return found;
 }
 
 /// Moves the base from one pose to another in h seconds. @param level how often the sub-step has been divided
@@ -354,17 +434,31 @@ bool Insertion::Parts::move_on(const Pose& from, const Pose& to, double h, int l
   held->base = to;
   held->needle->set_base(to);
   tissue.begin(h);
+  if (level == 0 && balance_alone(from, to, h, step)) {
+    end_move(h, step);
+    return true;
+  }
+  if (std::exchange(was_alone, false)) {
+    alone->forget_tangent();
+    balance->forget_tangent();
+    predictor->interrupt();
+  }
   balance->damp(held->damping.in_step(h, held->path.tip.is_on_bone(), level > 0) / h);
   predictor->begin(from, to, needles_in_balance(), held->path.tip, held->shaft.all());
   balance->base_moved(predictor->last_motion());
   const int most_levels = settings.solver == CouplingSettings::Solver::staggered ? 1 : kMostLevels;
   if (!find_balance(h, level < most_levels, step)) return false;
+  end_move(h, step);
+  return true;
+}
+
+/// Contacts come and go after a balance, and the tissue remembers its forces.
+void Insertion::Parts::end_move(double h, Step& step) {
   ContactStates::stick_where_slow(held->shaft.all(), h, settings.zero_band_mm_per_s);
   held->shaft.wake_and_drop(held->path.tracks.now, held->path.marks, held->path.tip.force, step);
   share_length();
   held->path.pass_open_end(forces(), step);
   tissue.end(forces(), held->path.tracks.now);
-  return true;
 }
 
 /// The same, as a whole or, where that has no balance, in parts. After a sub-step that needed parts the next one begins

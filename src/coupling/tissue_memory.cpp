@@ -17,7 +17,7 @@ void TissueMemory::begin(double h) {
 }
 
 void TissueMemory::gather(const ContactCompliance& compliance) {
-  if (!on() || (gathered_ && version_ == compliance.version())) return;
+  if (!on() || (gathered_ == Gathered::all && version_ == compliance.version())) return;
   const Eigen::Index count = 3 * Eigen::Index{compliance.points()};
   Eigen::Map<VecX> sum(of_shaft_.data(), count);
   sum.setZero();
@@ -26,14 +26,26 @@ void TissueMemory::gather(const ContactCompliance& compliance) {
                                     remembered);
   sum = -sum;
   sum.head<3>() = compliance.wide().block(3, 0, count - 3, 3).transpose().lazyProduct(remembered);
-  gathered_ = true;
+  gathered_ = Gathered::all;
+  version_ = compliance.version();
+}
+
+void TissueMemory::gather(const ContactCompliance& compliance, std::span<const int> points) {
+  if (!on()) return;
+  const Eigen::Index count = 3 * Eigen::Index{compliance.points()} - 3;
+  const Eigen::Map<const VecX> remembered(remembered_.data() + 3, count);
+  for (const int point : points) {
+    const auto columns = compliance.wide().block(3, 3 * point, count, 3);  // or rows: F is symmetric
+    of_shaft_.col(point) = columns.transpose().lazyProduct(remembered);
+  }
+  gathered_ = Gathered::some;
   version_ = compliance.version();
 }
 
 Vec3 TissueMemory::displacement(const ContactCompliance& compliance, int point) const {
   if (!on()) return Vec3::Zero();
   constexpr int tip = ContactCompliance::kTip;
-  if (point != tip && gathered_ && version_ == compliance.version())
+  if (point != tip && gathered_ != Gathered::none && version_ == compliance.version())
     return most() * kept_ * (of_shaft_.col(point) + compliance.wide(point, tip) * remembered_.col(tip));
   const Eigen::Index count = 3 * Eigen::Index{compliance.points()};
   const Eigen::Map<const VecX> remembered(remembered_.data(), count);
@@ -43,14 +55,14 @@ Vec3 TissueMemory::displacement(const ContactCompliance& compliance, int point) 
 
 void TissueMemory::end(const Eigen::Ref<const MatX>& forces) {
   if (!on()) return;
-  gathered_ = false;
+  gathered_ = Gathered::none;
   remembered_ *= kept_;
   remembered_.leftCols(forces.cols()) += (1.0 - kept_) * forces;
   kept_ = 1.0;
 }
 
 void TissueMemory::hand_over(int from, int to, double part) {
-  gathered_ = false;
+  gathered_ = Gathered::none;
   const Vec3 moved = part * remembered_.col(from);
   remembered_.col(from) -= moved;
   remembered_.col(to) += moved;
@@ -64,7 +76,7 @@ bool TissueMemory::relaxed(const ContactCompliance& compliance) const {
 }
 
 void TissueMemory::reset() {
-  gathered_ = false;
+  gathered_ = Gathered::none;
   remembered_.setZero();
 }
 

@@ -4,6 +4,8 @@
 #include "stylet/coupling/contact_compliance.hpp"
 #include "stylet/coupling/laws.hpp"
 
+#include <span>
+
 namespace stylet {
 
 /// The memory of creeping tissue: a standard linear solid with one time constant τ for all tissue. In addition to the
@@ -31,12 +33,20 @@ class TissueMemory {
   /// The part of this sub-step's force that is lasting at its end; 0 between sub-steps, and for elastic tissue.
   [[nodiscard]] double share() const { return most() * (1.0 - kept_); }
 
+  /// The part of the memory that is left after this sub-step.
+  [[nodiscard]] double kept() const { return kept_; }
+  /// m [N] of a point.
+  [[nodiscard]] auto remembered(int point) const { return remembered_.col(point); }
+
   /// Lasting force on a point [N] by earlier sub-steps only.
   [[nodiscard]] Vec3 past(int point) const { return most() * kept_ * remembered_.col(point); }
 
   /// Sums the displacements by the shaft points' memory, which makes displacement() fast: while the cut advances in a
   /// sub-step, only the tip's terms change.
   void gather(const ContactCompliance& compliance);
+  /// The same for some shaft points only; displacement() must not be asked for others until release().
+  void gather(const ContactCompliance& compliance, std::span<const int> points);
+  void release() { gathered_ = Gathered::none; }
   /// Displacement of a point by past() on all points [mm].
   [[nodiscard]] Vec3 displacement(const ContactCompliance& compliance, int point) const;
 
@@ -50,7 +60,7 @@ class TissueMemory {
   /// Clears the memory of a point, which becomes another material point.
   void forget(int point) {
     remembered_.col(point).setZero();
-    gathered_ = false;
+    gathered_ = Gathered::none;
   }
 
   /// Whether earlier forces displace no point by more than a nanometre.
@@ -62,9 +72,10 @@ class TissueMemory {
   Creep creep_;
   double kept_ = 1.0;  ///< the part of m that is left at the end of the sub-step
   MatX remembered_;    ///< m [N] (3 × points)
-  MatX of_shaft_;      ///< F m [mm] (3 × points) without the tip's m; valid if gathered_
-  bool gathered_ = false;
-  unsigned version_ = 0;  ///< version of the compliance when of_shaft_ was computed
+  MatX of_shaft_;      ///< F m [mm] (3 × points) without the tip's m
+  enum class Gathered { none, some, all };
+  Gathered gathered_ = Gathered::none;  ///< the columns of of_shaft_ that are valid
+  unsigned version_ = 0;                ///< version of the compliance when of_shaft_ was computed
 };
 
 }  // namespace stylet

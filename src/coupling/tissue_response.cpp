@@ -38,17 +38,22 @@ TipRelief TissueResponse::relief(const ContactForces& contacts) const {
   Vec3 of_others = Vec3::Zero();
   for (const ShaftContact& contact : contacts.shaft)
     of_others += Vec3(scale.middleRows<3>(3 * contact.point).transpose() * contact.force);
+  if (hold_ != nullptr) of_others += hold_->of_others();
   return {*compliance_, contacts.tip, of_others};
 }
 
 Vec3 TissueResponse::lasting_displacement(int point, const ContactForces& contacts) const {
-  if (!memory_.on()) return Vec3::Zero();
+  if (!memory_.on()) return hold_ != nullptr ? past_displacement(point) : Vec3::Zero();
   return memory_.share() * by_present(compliance_->wide(), point, contacts) + past_displacement(point);
 }
 
 Vec3 TissueResponse::displacement(int point, const ContactForces& contacts) const {
   Vec3 u = by_present(compliance_->matrix(), point, contacts) + lasting_displacement(point, contacts);
   if (compliance_->stiffens()) u -= relief(contacts).of(point);
+  if (hold_ != nullptr) {
+    u -= hold_->reduction(point, ContactCompliance::kTip) * contacts.tip;
+    for (const ShaftContact& contact : contacts.shaft) u -= hold_->reduction(point, contact.point) * contact.force;
+  }
   return u;
 }
 
@@ -56,6 +61,7 @@ void TissueResponse::gather(const ContactForces& contacts, Eigen::Ref<MatX> forc
   forces.setZero();
   forces.col(ContactCompliance::kTip) = contacts.tip;
   for (const ShaftContact& contact : contacts.shaft) forces.col(contact.point) = contact.force;
+  if (hold_ != nullptr) hold_->write_forces(forces);
 }
 
 Eigen::Ref<const MatX> TissueResponse::all_forces(const ContactForces& contacts) {

@@ -3,10 +3,12 @@
 
 #include "coupling/contacts/shaft_contact.hpp"
 #include "coupling/tip_relief.hpp"
+#include "coupling/tissue_hold.hpp"
 #include "coupling/tissue_memory.hpp"
 #include "stylet/coupling/track.hpp"
 
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace stylet {
@@ -24,6 +26,23 @@ class TissueResponse {
   [[nodiscard]] ContactCompliance& compliance() { return *compliance_; }
   [[nodiscard]] const ContactCompliance& compliance() const { return *compliance_; }
 
+  /// While the needle that the hand moves is balanced alone, the contacts in all questions are its own, and all others
+  /// are in `hold`; null: there are none. @param points of the own shaft contacts
+  void hold_by(const TissueHold* hold, std::span<const int> points = {}) {
+    hold_ = hold;
+    if (hold != nullptr) {
+      memory_.gather(*compliance_, points);
+    } else {
+      memory_.release();
+    }
+  }
+  [[nodiscard]] const TissueHold* hold() const { return hold_; }
+  [[nodiscard]] const TissueMemory& memory() const { return memory_; }
+  /// Changes whenever compliance_now() among points other than the tip has changed.
+  [[nodiscard]] std::uint64_t version() const {
+    return compliance_->version() + (hold_ != nullptr ? hold_->version() << 32u : 0u);
+  }
+
   /// Begins a sub-step of h seconds.
   void begin(double h) {
     memory_.begin(h);
@@ -36,12 +55,18 @@ class TissueResponse {
   [[nodiscard]] Mat3 compliance_now(int point, int other) const {
     Mat3 now = (*compliance_)(point, other);
     if (const double share = memory_.share(); share > 0.0) now += share * compliance_->wide(point, other);
+    if (hold_ != nullptr) now -= hold_->reduction(point, other);
     return now;
   }
   /// Prepares past_displacement() for calls with many points.
-  void gather_past() { memory_.gather(*compliance_); }
+  void gather_past() {
+    if (hold_ == nullptr) memory_.gather(*compliance_);
+  }
   /// [mm] LPS, displacement of a point by the lasting forces of earlier sub-steps.
-  [[nodiscard]] Vec3 past_displacement(int point) const { return memory_.displacement(*compliance_, point); }
+  [[nodiscard]] Vec3 past_displacement(int point) const {
+    const Vec3 lasting = memory_.displacement(*compliance_, point);
+    return hold_ != nullptr ? Vec3(lasting + hold_->displacement(point)) : lasting;
+  }
   /// [mm] LPS, displacement of a point by all forces.
   [[nodiscard]] Vec3 displacement(int point, const ContactForces& contacts) const;
   /// [mm] LPS, the part of displacement() to which the tissue has crept, the creep of this sub-step included.
@@ -111,6 +136,7 @@ class TissueResponse {
 
   std::unique_ptr<ContactCompliance> compliance_;
   TissueMemory memory_;
+  const TissueHold* hold_ = nullptr;
   double reach_mm_;      ///< [mm] length of cut over which the track takes over the tip's memory
   double tip_xi_ = 0.0;  ///< [mm] arc length on the track of the tip's memory
   bool relaxing_ = false;

@@ -153,6 +153,61 @@ TEST(SeveralNeedles, all_laws_hold_for_all_needles_in_random_procedures) {
   EXPECT_GT(slid, 0) << "no needle at rest has slipped, so that slipping was not tested";
 }
 
+/// The forces on the hands of four needles in each step of a random procedure.
+std::vector<Vec3> forces_on_hands(BlockOptions options, int follow_from, unsigned seed) {
+  options.coupling.follow_from = follow_from;
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  Row row(4, options);
+  for (int k = 0; k < 4; ++k) {
+    row.aim(k, Vec3(7.0 * (k % 2) + unit(random), 7.0 * (k / 2) + unit(random), 0),
+            Vec3(0.03 * unit(random), 0.03 * unit(random), 1));
+    if (k < 3) row.block.go(40.0 + 5.0 * unit(random));
+  }
+  std::vector<Vec3> forces;
+  const auto go = [&](double way, int steps) {
+    for (int k = 0; k < steps; ++k) {
+      row.block.depth += way / steps;
+      row.block.step(1e-3);
+      for (int needle = 0; needle < 4; ++needle) forces.push_back(row.insertion().hand_force_on(needle));
+    }
+  };
+  go(45.0, 1500);
+  go(0.0, 100);
+  go(-10.0, 300);
+  EXPECT_EQ(row.block.flags & (Step::not_converged | Step::contact_cycling | Step::out_of_contacts), 0u);
+  return forces;
+}
+
+TEST(SeveralNeedles, that_follow_have_the_forces_of_those_balanced_together) {
+  BlockOptions elastic = with(Method::near_field);
+  BlockOptions creeping;
+  creeping.coupling.creep = {.factor = 4.0, .time_s = 0.6};
+  for (RegionLaws& laws : creeping.laws) laws.stiffening_MPa = 0.5;
+  for (const BlockOptions& options : {elastic, creeping}) {
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+      const std::vector<Vec3> together = forces_on_hands(options, 10000, seed);
+      const std::vector<Vec3> followed = forces_on_hands(options, 1, seed);
+      ASSERT_EQ(together.size(), followed.size());
+      double peak = 0.0;
+      for (const Vec3& force : together) peak = std::max(peak, force.norm());
+      std::vector<double> of_moved;
+      std::vector<double> of_resting;
+      for (std::size_t k = 0; k < together.size(); ++k)
+        (k % 4 == 3 ? of_moved : of_resting).push_back((followed[k] - together[k]).norm() / peak);
+      for (std::vector<double>* const off : {&of_moved, &of_resting}) std::sort(off->begin(), off->end());
+      const auto quantile = [](const std::vector<double>& off, double part) {
+        return off[static_cast<std::size_t>(part * static_cast<double>(off.size() - 1))];
+      };
+      // Where a surface breaks or a contact is made a step sooner, the forces of that step differ more.
+      EXPECT_LT(quantile(of_moved, 0.5), 2e-5) << "seed " << seed;
+      EXPECT_LT(quantile(of_moved, 0.99), 5e-4) << "seed " << seed;
+      EXPECT_LT(quantile(of_resting, 0.5), 5e-5) << "seed " << seed;
+      EXPECT_LT(quantile(of_resting, 0.99), 2e-3) << "seed " << seed;
+    }
+  }
+}
+
 TEST(SeveralNeedles, the_tissue_is_displaced_as_by_one_solution_with_the_forces_of_all_needles) {
   Row row(2, with(Method::embedded));
   row.insert(0, Vec3(-6, 0, 0), 45.0);
@@ -273,15 +328,20 @@ TEST(SeveralNeedles, a_mirrored_procedure_has_mirrored_forces) {
 
 TEST(SeveralNeedles, a_step_does_not_allocate_with_needles_at_rest) {
   if (!test::AllocationCount::available()) GTEST_SKIP() << "allocations cannot be counted in this build";
-  Row row(2);
-  row.insert(0, Vec3(-6, 0, 0), 45.0);
-  row.aim(1, Vec3(6, 0, 0));
-  for (int k = 0; k < 600; ++k) {
-    row.insertion().prepare(8.0);
-    row.block.depth += 0.05;
-    const test::AllocationCount allocations;
-    row.insertion().step(row.block.pose(), 2.5e-3);
-    ASSERT_EQ(allocations.count(), 0) << "at depth " << row.block.depth;
+  for (const int follow_from : {1, 10000}) {
+    BlockOptions options;
+    options.coupling.follow_from = follow_from;
+    options.coupling.creep = {.factor = 2.0, .time_s = 0.5};
+    Row row(2, options);
+    row.insert(0, Vec3(-6, 0, 0), 45.0);
+    row.aim(1, Vec3(6, 0, 0));
+    for (int k = 0; k < 600; ++k) {
+      row.insertion().prepare(8.0);
+      row.block.depth += 0.05;
+      const test::AllocationCount allocations;
+      row.insertion().step(row.block.pose(), 2.5e-3);
+      ASSERT_EQ(allocations.count(), 0) << "at depth " << row.block.depth << ", follow_from " << follow_from;
+    }
   }
 }
 

@@ -19,7 +19,7 @@ constexpr double kSameSpeed_mm = 1e-6;
 
 void ContactStates::begin(int most_toggles) {
   most_toggles_ = most_toggles;
-  for (ShaftContact& contact : contacts_.shaft.all()) contact.toggles = 0;
+  for (ShaftContact& contact : contacts_.grips()) contact.toggles = 0;
   contacts_.tip.toggles = 0;
 }
 

@@ -268,6 +268,16 @@ bool ContactSystem::solve(TipRows held) {
   return fits_;
 }
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): the result is written through its view
+bool ContactSystem::settle_rest(Eigen::Ref<VecX> force) {
+  if (!resting_.follow()) return false;
+  resting_.move_tip();
+  resting_.solve_all(true);
+  resting_.solve(A, needle);
+  resting_.settle(push, force);
+  return true;
+}
+
 double ContactSystem::axial_excess(int contact) const {
   const auto c = static_cast<std::size_t>(contact);
   const Vec3 change = rows_.frame[c] * lambda.segment<3>(3 * contact) - rows_.now.segment<3>(3 * contact);

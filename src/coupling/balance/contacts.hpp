@@ -19,11 +19,14 @@ struct Contacts {
   TipContact& tip;
   ShaftContacts& shaft;
   NeedleBundle* bundle = nullptr;  ///< all needles, where some rest in the tissue
+  bool without_others = false;     ///< only the contacts of the needle that the hand moves (TissueHold)
 
-  [[nodiscard]] int count() const { return 1 + static_cast<int>(shaft.count()); }
-  [[nodiscard]] ShaftContact& of_shaft(int load) const { return shaft.all()[static_cast<std::size_t>(load - 1)]; }
+  /// The shaft contacts.
+  [[nodiscard]] std::span<ShaftContact> grips() const { return without_others ? shaft.own() : shaft.all(); }
+  [[nodiscard]] int count() const { return 1 + static_cast<int>(grips().size()); }
+  [[nodiscard]] ShaftContact& of_shaft(int load) const { return grips()[static_cast<std::size_t>(load - 1)]; }
   /// Number of the first shaft contact of the needle that the hand moves.
-  [[nodiscard]] int first_own() const { return 1 + static_cast<int>(shaft.others()); }
+  [[nodiscard]] int first_own() const { return without_others ? 1 : 1 + static_cast<int>(shaft.others()); }
   /// The needle of a contact.
   [[nodiscard]] const Needle& needle_of(int load) const {
     return load < first_own() && load > 0 ? *of_shaft(load).needle : needle;
@@ -38,7 +41,7 @@ struct Contacts {
   [[nodiscard]] double arc(int load) const {
     return load == 0 ? needle.length() : std::clamp(of_shaft(load).s, 0.0, needle_of(load).length());
   }
-  [[nodiscard]] ContactForces forces() const { return {tip.force, shaft.all()}; }
+  [[nodiscard]] ContactForces forces() const { return {tip.force, grips()}; }
   /// Those of the needle that the hand moves.
   [[nodiscard]] ContactForces own_forces() const { return {tip.force, shaft.own()}; }
   /// [mm] LPS, displacement of a point of ContactCompliance by all forces.
@@ -46,7 +49,7 @@ struct Contacts {
   /// [N] The largest force of a contact, at least 1 N; NaN where a force is NaN.
   [[nodiscard]] double largest_force() const {
     double largest = larger_or_nan(1.0, tip.force.norm());
-    for (const ShaftContact& contact : shaft.all()) largest = larger_or_nan(largest, contact.force.norm());
+    for (const ShaftContact& contact : grips()) largest = larger_or_nan(largest, contact.force.norm());
     return largest;
   }
 };

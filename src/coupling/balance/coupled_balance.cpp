@@ -18,9 +18,6 @@ constexpr int kMaxPivots = 60;
 /// kAllAtOnce: rounds in which all contradictions are resolved together; after them only the worst one is. Raised,
 /// states may alternate for longer.
 constexpr int kAllAtOnce = 4;
-/// kMaxToggles: a contact that changes its state more often than this in a sub-step keeps it. Raised, cycling costs
-/// more.
-constexpr int kMaxToggles = 6;
 /// kManyIterations: refactorise before the next step if a balance took more iterations than this, and kSlow or kSlowish
 /// agree. Raised, matrices are kept longer.
 constexpr int kManyIterations = 5;
@@ -34,6 +31,11 @@ constexpr double kSlowish = 0.02;
 /// kWorn: begin the next tangent if the last iteration left more than this part of the error. Raised, it is begun
 /// later.
 constexpr double kWorn = 0.01;
+/// kMostSettling: Newton steps of needles at rest alone. Raised, needles that bend much are balanced more exactly.
+constexpr int kMostSettling = 5;
+/// kSettled [error over the largest load]: another Newton step follows where the error before the last one was larger.
+/// Raised, needles at rest are balanced less exactly.
+constexpr double kSettled = 3e-2;
 /// kTimeLeft: a balance of at most this many iterations leaves time for a piece of the next tangent; for a tip that
 /// cuts, one iteration less. Raised, the longest steps take longer.
 constexpr int kTimeLeft = 2;
@@ -101,7 +103,8 @@ CoupledBalance::CoupledBalance(const BalanceParts& parts)
       states_(parts_.contacts),
       tissue_(system_, parts.most_contacts + 1),
       tangent_(parts_.contacts.needle, system_, rows_, parts.most_contacts + 1),
-      kept_(parts_.contacts.needle.state().size(), parts.most_contacts) {}
+      kept_(parts_.contacts.needle.state().size(), parts.most_contacts),
+      at_rest_(VecX::Zero(3 * static_cast<Eigen::Index>(parts_.contacts.first_own()))) {}
 
 void CoupledBalance::march(double advance) { parts_.contacts.tip.cut.march(advance); }
 
@@ -301,7 +304,7 @@ bool CoupledBalance::cut_on(double h) {
   const bool ends = now != tet && now == search_.left_tet && way > 0.0 && way < kShortCut_mm;
   if (now != tet && way < 0.0) search_.left_tet = tet;
   if (!ends && !tip.cut.is_blocked()) return false;
-  if (ends) tip.toggles = kMaxToggles + 1;  // the tip keeps this state for the sub-step
+  if (ends) tip.toggles = kMostToggles + 1;  // the tip keeps this state for the sub-step
   tip.set_state(TipContact::State::stick);
   return true;
 }
@@ -315,7 +318,7 @@ bool CoupledBalance::is_astray() const {
 
 /// Restores needle and tissue to the start of the sub-step.
 void CoupledBalance::give_way() {
-  parts_.predictor.go_back(parts_.contacts.needle, parts_.contacts.tip, parts_.contacts.shaft.all());
+  parts_.predictor.go_back(parts_.contacts.needle, parts_.contacts.tip, parts_.contacts.grips());
 }
 
 /// The part of an error that the needle's tangent is to blame for, over the tolerance. While the tip cuts, the tip's
@@ -345,15 +348,37 @@ void CoupledBalance::watch_tangent(const Progress& progress, int iteration) {
   if (iteration <= (parts_.contacts.tip.cuts() ? kTimeLeft - 1 : kTimeLeft)) tangent_.prepare(parts_.contacts);
 }
 
+bool CoupledBalance::settle_rest(double h) {
+  Contacts& contacts = parts_.contacts;
+  for (int iteration = 0; iteration < kMostSettling; ++iteration) {
+    look(h);
+    const double error = larger_or_nan(error_of(1, contacts.first_own()),
+                                       contacts.bundle->residual_of_resting(rows_.loads()) / moment());
+    const bool fit = tangent_.relax_resting(contacts);
+    rows_.tip.cut_per_N = 0.0;
+    if (!system_.settle_rest(at_rest_)) return false;
+    for (int c = 1; c < contacts.first_own(); ++c) {
+      rows_.loads()[static_cast<std::size_t>(c)].force = -system_.push.segment<3>(3 * c);
+      contacts.force(c) = at_rest_.segment<3>(3 * c);
+      system_.lambda.segment<3>(3 * c).noalias() =
+          rows_.frame[static_cast<std::size_t>(c)].transpose() * contacts.force(c);
+    }
+    contacts.bundle->advance_resting(rows_.loads());
+    for (int c = 1; c < contacts.first_own(); ++c) slide(c);
+    if (fit && error < kSettled * rows_.largest_load()) break;
+  }
+  return true;
+}
+
 bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
   TipContact& tip = parts_.contacts.tip;
   Predictor& predictor = parts_.predictor;
-  states_.begin(kMaxToggles);
+  states_.begin(kMostToggles);
   tip.begin(parts_.contacts.forces());
   if (const auto points = tangent_.take_prepared(parts_.contacts); !points.empty()) tissue_.take_points(points);
   search_.begin();
   bool from_start = !predictor.expects_forces();
-  predictor.go_on(parts_.contacts.needle, tip, parts_.contacts.shaft.all());
+  predictor.go_on(parts_.contacts.needle, tip, parts_.contacts.grips());
 
   Progress progress;
   Index border_tet = -1;  // element of the tip when it was last added to the matrix

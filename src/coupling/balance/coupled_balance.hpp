@@ -27,6 +27,14 @@ class CoupledBalance : public BalanceSolver {
   void forget_tangent() override { tangent_.forget(); }
   void release() override { tangent_.release(); }
 
+  /// Needles at rest follow the moved one (RestingHold): takes one Newton step of them alone, with unchanged forces on
+  /// the moved needle. @return false, with nothing changed, where their matrix is outdated
+  [[nodiscard]] bool settle_rest(double h);
+  [[nodiscard]] ContactRows& rows() { return rows_; }
+  [[nodiscard]] ContactSystem& system() { return system_; }
+  [[nodiscard]] ContactStates& states() { return states_; }
+  void begin_states() { states_.begin(kMostToggles); }
+
  private:
   /// The state of a solve between its iterations.
   struct Progress;
@@ -51,6 +59,9 @@ class CoupledBalance : public BalanceSolver {
   [[nodiscard]] bool is_astray() const;
   void give_way();
 
+  /// A contact that changes its state more often than this in a sub-step keeps it. Raised, cycling costs more.
+  static constexpr int kMostToggles = 6;
+
   BalanceParts parts_;
   ContactRows rows_;
   ContactSystem system_;
@@ -61,6 +72,7 @@ class CoupledBalance : public BalanceSolver {
   double largest_at_start_ = 0.0;  ///< [N] largest force of a contact at the start of the sub-step
   double error_of_rest_ = 0.0;     ///< error of needle and shaft contacts in the last look(), over the tolerance
   CutSearch search_;               ///< the length of cut
+  VecX at_rest_;                   ///< [N] LPS (3 first own) work space: forces of the contacts at rest
 };
 
 }  // namespace stylet

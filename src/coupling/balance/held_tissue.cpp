@@ -82,6 +82,20 @@ void HeldTissue::motion(const Eigen::Ref<const VecX>& z, const RestingMatrix& ma
     motion.noalias() -= of_sliding_.topLeftCorner(s, others()).transpose().lazyProduct(sliding.slips(z, matrix));
 }
 
+void HeldTissue::displacement(const Eigen::Ref<const VecX>& forces, Eigen::Ref<VecX> motion) const {
+  dense::transposed_product(motion, A_.topLeftCorner(forces.size(), others()), forces);
+}
+
+void HeldTissue::answer(const Eigen::Ref<const MatX>& Y, const RestingMatrix& matrix, const SlidingRows& sliding,
+                        Eigen::Ref<MatX> motion, Eigen::Ref<MatX> of_sliding) const {
+  dense::transposed_product(motion, solved_.topLeftCorner(Y.rows(), others()), Y);
+  const Eigen::Index s = sliding.count();
+  if (s == 0) return;
+  auto of = of_sliding.topRows(s);
+  sliding.answer(Y, matrix, of);
+  motion.noalias() -= slipped_.topLeftCorner(s, others()).transpose().lazyProduct(of);
+}
+
 void HeldTissue::subtract(const Eigen::Ref<const VecX>& forces, Eigen::Ref<VecX> z) const {
   dense::subtract_product(z, solved_.topLeftCorner(z.size(), others()), forces);
 }

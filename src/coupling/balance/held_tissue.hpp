@@ -40,6 +40,12 @@ class HeldTissue {
   /// Motion of the others by a solved column, after the sliding contacts have yielded. @param motion (3 known) written
   void motion(const Eigen::Ref<const VecX>& z, const RestingMatrix& matrix, SlidingRows& sliding,
               Eigen::Ref<VecX> motion) const;
+  /// A_or λ. @param forces [N] λ, on the tissue at the contacts at rest (3 grips) @param motion (3 known) written
+  void displacement(const Eigen::Ref<const VecX>& forces, Eigen::Ref<VecX> motion) const;
+  /// A_or S B⁻¹ Y, after the sliding contacts have yielded, without a solution for it.
+  /// @param Y [mm] (rows × k) @param motion (3 known × k) written @param of_sliding (most sliding × k) work space
+  void answer(const Eigen::Ref<const MatX>& Y, const RestingMatrix& matrix, const SlidingRows& sliding,
+              Eigen::Ref<MatX> motion, Eigen::Ref<MatX> of_sliding) const;
   /// z −= B⁻¹ Sᵀ A_ro Δ. @param forces [N] (3 known) Δ
   void subtract(const Eigen::Ref<const VecX>& forces, Eigen::Ref<VecX> z) const;
 

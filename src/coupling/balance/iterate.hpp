@@ -18,17 +18,17 @@ class Iterate {
     shape_ = contacts.needle.state();
     advance_ = contacts.tip.cut.advance();
     tip_force_ = contacts.tip.force;
-    for (std::size_t k = 0; k < contacts.shaft.count(); ++k)
-      shaft_[k] = {contacts.shaft.all()[k].force, contacts.shaft.all()[k].s};
+    for (std::size_t k = 0; k < contacts.grips().size(); ++k)
+      shaft_[k] = {contacts.grips()[k].force, contacts.grips()[k].s};
   }
 
   /// Restores the iterate. No contact may have changed its state since keep().
   void restore(const Contacts& contacts) const {
     contacts.needle.set_state(shape_);
     contacts.tip.force = tip_force_;
-    for (std::size_t k = 0; k < contacts.shaft.count(); ++k) {
-      contacts.shaft.all()[k].force = shaft_[k].force;
-      contacts.shaft.all()[k].s = shaft_[k].s;
+    for (std::size_t k = 0; k < contacts.grips().size(); ++k) {
+      contacts.grips()[k].force = shaft_[k].force;
+      contacts.grips()[k].s = shaft_[k].s;
     }
     if (contacts.tip.cuts()) contacts.tip.cut.march(advance_);
   }
@@ -38,8 +38,8 @@ class Iterate {
     work_ = 0.5 * (shape_ + contacts.needle.state());
     contacts.needle.set_state(work_);
     contacts.tip.force = 0.5 * (tip_force_ + contacts.tip.force).eval();
-    for (std::size_t k = 0; k < contacts.shaft.count(); ++k) {
-      ShaftContact& contact = contacts.shaft.all()[k];
+    for (std::size_t k = 0; k < contacts.grips().size(); ++k) {
+      ShaftContact& contact = contacts.grips()[k];
       contact.force = 0.5 * (shaft_[k].force + contact.force).eval();
       contact.s = 0.5 * (shaft_[k].s + contact.s);
     }

@@ -3,6 +3,8 @@
 
 #include "core/largest.hpp"
 
+#include <algorithm>
+
 namespace stylet {
 
 NeedleBundle::NeedleBundle(Needle& moving, std::span<const AtRest> at_rest, int most_own) : moving_(moving) {
@@ -97,6 +99,22 @@ bool NeedleBundle::relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free
   return true;
 }
 
+bool NeedleBundle::relax_resting(std::span<const PointLoad> loads, Eigen::Ref<VecX> free,
+                                 std::span<const Mat3> springs) {
+  bool fit = true;
+  for (Resting& rest : resting_) {
+    const auto first = static_cast<std::size_t>(rest.first);
+    const auto count = static_cast<std::size_t>(rest.count);
+    const auto part = loads.subspan(first, count);
+    auto motion = free.segment(3 * rest.first, 3 * rest.count);
+    if (rest.needle->relax(part, motion)) continue;
+    fit = false;
+    const auto lent = springs.empty() ? springs : springs.subspan(first, count);
+    rest.needle->linearise(part, rest.block, motion, lent, Indefinite::shift);
+  }
+  return fit;
+}
+
 bool NeedleBundle::append(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance) {
   const auto mine = own(loads);
   const Eigen::Index rows = 3 * static_cast<Eigen::Index>(mine.size());
@@ -126,6 +144,10 @@ bool NeedleBundle::prepared_compliance(Eigen::Ref<MatX> compliance) {
 
 void NeedleBundle::advance(std::span<const PointLoad> loads) {
   moving_.advance(own(loads));
+  advance_resting(loads);
+}
+
+void NeedleBundle::advance_resting(std::span<const PointLoad> loads) {
   for (const Resting& rest : resting_)
     rest.needle->advance(loads.subspan(static_cast<std::size_t>(rest.first), static_cast<std::size_t>(rest.count)));
 }

@@ -47,6 +47,11 @@ class NeedleBundle final : public Needle {
   bool prepared_compliance(Eigen::Ref<MatX> compliance) override;
   void take_prepared() override { moving_.take_prepared(); }
   void advance(std::span<const PointLoad> loads) override;
+  /// relax() and advance() of the needles at rest alone. A needle whose tangent does not fit, since its guide has begun
+  /// or ceased to hold it, is linearised. @param loads, springs of all needles; no springs: none are lent
+  /// @return whether all tangents fit
+  bool relax_resting(std::span<const PointLoad> loads, Eigen::Ref<VecX> free, std::span<const Mat3> springs);
+  void advance_resting(std::span<const PointLoad> loads);
   /// The largest residual of a needle [N mm].
   [[nodiscard]] double residual(std::span<const PointLoad> loads) override;
   /// Those of the needle that the hand moves, and of the needles at rest.

@@ -92,6 +92,12 @@ void NeedleTangent::linearise(const Contacts& contacts, bool resting_too, bool a
 
 bool NeedleTangent::relax() { return fits_ && needle_.relax(rows_.loads(), system_.needle.motion()); }
 
+bool NeedleTangent::relax_resting(const Contacts& contacts) {
+  std::span<const Mat3> lent;
+  if (resting_lent_ > 0) lent = springs_;
+  return contacts.bundle->relax_resting(rows_.loads(), system_.needle.free, lent);
+}
+
 void NeedleTangent::append(int load) {
   const auto loads = rows_.loads().first(static_cast<std::size_t>(load) + 1);
   fits_ = fits_ && needle_.append(loads, system_.needle.next_rows());

@@ -39,6 +39,8 @@ class NeedleTangent {
   /// Takes a Newton step of the needle with the present tangent. @return false where the tangent belongs to other
   /// contacts
   [[nodiscard]] bool relax();
+  /// The same for needles at rest alone. @return whether all their tangents fit
+  bool relax_resting(const Contacts& contacts);
   /// Appends a new contact after the present ones to the tangent and the matrix, where they fit.
   void append(int load);
 

@@ -161,6 +161,21 @@ void RestingGrips::finish(const Eigen::Ref<const VecX>& others, double cut, VecX
   force.segment(3, n) = rows_.now.segment(3, n) + change;
 }
 
+void RestingGrips::settle(VecX& push, Eigen::Ref<VecX> force) {
+  const Eigen::Index n = matrix_.contact_rows();
+  auto z = z_.head(matrix_.rows());
+  if (moves_) {
+    z = still_.head(matrix_.rows());
+    sliding_.yield_in(z, matrix_);
+  } else {
+    z.setZero();
+  }
+  push.segment(3, n) = rows_.now.segment(3, n) + z.head(n);
+  auto change = columns_.col(0).head(n);
+  matrix_.forces(z, change);
+  force.segment(3, n) = rows_.now.segment(3, n) + change;
+}
+
 // NOLINTEND(performance-unnecessary-value-param)
 
 }  // namespace stylet

@@ -28,7 +28,18 @@ class SlidingRows {
   /// [mm/N] Yield of a contact along its needle beyond that in B.
   [[nodiscard]] double more(int grip) const;
 
+  /// B⁻¹ e of a contact that slides or has slid; its first rows() of the matrix.
+  [[nodiscard]] auto column(int grip, const RestingMatrix& matrix) const {
+    return columns_.col(grip).head(matrix.rows());
+  }
+  [[nodiscard]] bool is_known(int grip) const { return known_[static_cast<std::size_t>(grip)].known; }
+
   // NOLINTBEGIN(performance-unnecessary-value-param): the results are written through their views
+  /// Zᵀ Y. @param Y (rows × k) @param of (count × k) written
+  void answer(const Eigen::Ref<const MatX>& Y, const RestingMatrix& matrix, Eigen::Ref<MatX> of) const {
+    for (Eigen::Index j = 0; j < count(); ++j)
+      of.row(j) = column(sliding_[static_cast<std::size_t>(j)].grip, matrix).transpose().lazyProduct(Y);
+  }
   /// Eᵀ Z̃ for solved columns. @param columns (rows × k) @param of (count × k) written
   void take(const Eigen::Ref<const MatX>& columns, const RestingMatrix& matrix, Eigen::Ref<MatX> of) const;
   /// Y ← (diag(1/more) + Eᵀ Z)⁻¹ Y. @param Y (count × k)

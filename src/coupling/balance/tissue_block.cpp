@@ -19,7 +19,10 @@ constexpr double kMostDrift = 0.5;
 }  // namespace
 
 TissueBlock::TissueBlock(ContactSystem& system, int most_contacts)
-    : system_(system), tip_columns_(MatX::Zero(3 * static_cast<Eigen::Index>(most_contacts), 3)), slope_(tip_columns_) {
+    : system_(system),
+      tip_columns_(MatX::Zero(3 * static_cast<Eigen::Index>(most_contacts), 3)),
+      slope_(tip_columns_),
+      held_(tip_columns_) {
   points_.reserve(static_cast<std::size_t>(most_contacts));
 }
 
@@ -40,14 +43,19 @@ void TissueBlock::gather_tip(const Contacts& contacts, double share, int same) {
   const TipContact& tip = contacts.tip;
   const Vec3 way = tip.cut.x() - tip_;
   const double cut = tip.cut.direction().dot(way);
+  const TissueHold* const hold = contacts.tissue.hold();
+  const std::uint64_t held_by = hold != nullptr ? hold->version() : 0;
   const bool told = way.norm() < kMostCut_mm && std::abs(cut) > std::max(kLeastCut_mm, kAlong * way.norm()) &&
-                    share == share_ && !tip.cut.is_stale() && !stale_;
+                    share == share_ && !tip.cut.is_stale() && !stale_ && held_by == held_by_;
   tip_ = tip.cut.x();
   stale_ = tip.cut.is_stale();
   if (told) slope_at_ = tip_;
   if ((tip_ - slope_at_).norm() > kMostCut_mm) slope_.setZero();  // slope_ belongs to another place
   const ContactCompliance& compliance = contacts.tissue.compliance();
+  held_by_ = held_by;
   const auto count = static_cast<int>(points_.size());
+  for (int c = 0; hold != nullptr && c < count; ++c)
+    held_.middleRows<3>(3 * c) = hold->reduction(points_[static_cast<std::size_t>(c)], ContactCompliance::kTip);
   for (Eigen::Index k = 0; k < 3; ++k) {
     const double* const from = compliance.matrix().col(3 * ContactCompliance::kTip + k).data();
     const double* const wide = compliance.wide().col(3 * ContactCompliance::kTip + k).data();
@@ -57,7 +65,8 @@ void TissueBlock::gather_tip(const Contacts& contacts, double share, int same) {
       const int point = points_[static_cast<std::size_t>(c)];
       for (int i = 3 * c; i < 3 * c + 3; ++i) {
         const int row = 3 * point + i - 3 * c;
-        const double now = share > 0.0 ? from[row] + share * wide[row] : from[row];
+        double now = share > 0.0 ? from[row] + share * wide[row] : from[row];
+        if (hold != nullptr) now -= held_(i, k);
         if (c >= same) {
           slope[i] = 0.0;
         } else if (told) {
@@ -73,10 +82,9 @@ void TissueBlock::gather_tip(const Contacts& contacts, double share, int same) {
 }
 
 void TissueBlock::gather(const Contacts& contacts, int same) {
-  const ContactCompliance& compliance = contacts.tissue.compliance();
   const auto count = static_cast<int>(points_.size());
   const double share = contacts.tissue.creep_share();
-  const bool whole = version_ != compliance.version() || share_ != share;
+  const bool whole = version_ != contacts.tissue.version() || share_ != share;
   gather_tip(contacts, share, same);
   for (int c = 1; c < count; ++c) {
     for (int d = whole ? c : std::max(c, same); d < count; ++d) {
@@ -88,7 +96,7 @@ void TissueBlock::gather(const Contacts& contacts, int same) {
       system_.A.block<3, 3>(3 * d, 3 * c) = block.transpose();
     }
   }
-  version_ = compliance.version();
+  version_ = contacts.tissue.version();
   share_ = share;
 }
 

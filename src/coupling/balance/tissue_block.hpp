@@ -4,6 +4,7 @@
 #include "coupling/balance/contact_system.hpp"
 #include "coupling/balance/contacts.hpp"
 
+#include <cstdint>
 #include <vector>
 
 namespace stylet {
@@ -42,12 +43,15 @@ class TissueBlock {
   ContactSystem& system_;
   std::vector<int> points_;  ///< points whose compliance A holds
   int before_ = 0;
-  unsigned version_ = 0;          ///< version of the compliance that A was read from
+  std::uint64_t version_ = 0;     ///< version of the tissue that A was read from
   double share_ = -1.0;           ///< TissueResponse::creep_share() of A
   Vec3 tip_ = Vec3::Zero();       ///< [mm] LPS, place of the tip of A
   bool stale_ = false;            ///< whether the tip's compliance was taken from another place
   MatX tip_columns_;              ///< [mm/N] (3 contacts × 3) the tip's columns of A before stiffen()
   MatX slope_;                    ///< [1/N] (3 contacts × 3) their derivative per mm of cut
+  std::uint64_t held_by_ = 0;     ///< version of the hold that the tip's columns belong to
+  MatX held_;                     ///< [mm/N] (3 contacts × 3) work space: what needles at rest take off the tip's
+                                  ///< columns
   Vec3 slope_at_ = Vec3::Zero();  ///< [mm] LPS, place of the tip at which slope_ was computed
 };
 
