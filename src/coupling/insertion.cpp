@@ -101,6 +101,7 @@ struct Insertion::Parts {
   void end_move(double h, Step& step);
   void move_in_parts(const Pose& from, const Pose& to, double h, int level, Step& step);
   void finish_insertion(Step& step);
+  void forget_tangents();
   void settle_in_air(Step& step);
   void summarise(Step& step) const;
   void share_length() { held->path.tip.hand_over(held->shaft.share_length(held->path.tracks.now)); }
@@ -293,6 +294,12 @@ Result<> Insertion::Parts::take_up(int number) {
   return Ok{};
 }
 
+/// The needle has one tangent, which the balance of all needles and that of the held one alone make anew in turn.
+void Insertion::Parts::forget_tangents() {
+  balance->forget_tangent();
+  if (alone) alone->forget_tangent();
+}
+
 /// Solves for the needle's shape in the air, where only the guide bends it.
 void Insertion::Parts::settle_in_air(Step& step) {
   MatX no_compliance(0, 0);
@@ -302,7 +309,7 @@ void Insertion::Parts::settle_in_air(Step& step) {
       step.flags |= Step::not_converged;
       return;
     }
-    balance->forget_tangent();
+    forget_tangents();
     held->needle->linearise({}, no_compliance, no_motion);
     held->needle->advance({});
   }
@@ -331,8 +338,9 @@ void Insertion::Parts::place(const Pose& pose) {
   if (hold) hold->forget();
   if (tissue.is_relaxing()) tissue.reset();
   room.forget();
-  balance->forget_tangent();
+  forget_tangents();
   predictor->forget();
+  if (hold) predictor_alone->forget();
   held->base = pose;
   held->needle->set_base(pose);
   settle_in_air(unused);
@@ -343,6 +351,7 @@ void Insertion::Parts::place(const Pose& pose) {
 /// Moves a needle in the air, and tests whether it meets the patient.
 bool Insertion::Parts::enter(Step& step) {
   predictor->interrupt();
+  if (hold) predictor_alone->interrupt();
   settle_in_air(step);
   const bool arrived = held->path.move_through_air(step);
   if (!held->path.in_air()) {
@@ -394,8 +403,7 @@ bool Insertion::Parts::balance_alone(const Pose& from, const Pose& to, double h,
   TipContact& tip = held->path.tip;
   const bool on_bone = tip.is_on_bone();
   if (!std::exchange(was_alone, true)) {
-    alone->forget_tangent();
-    balance->forget_tangent();
+    forget_tangents();
     predictor_alone->interrupt();
   }
   alone->damp(held->damping.in_step(h, on_bone, false) / h);
@@ -439,8 +447,7 @@ bool Insertion::Parts::move_on(const Pose& from, const Pose& to, double h, int l
     return true;
   }
   if (std::exchange(was_alone, false)) {
-    alone->forget_tangent();
-    balance->forget_tangent();
+    forget_tangents();
     predictor->interrupt();
   }
   balance->damp(held->damping.in_step(h, held->path.tip.is_on_bone(), level > 0) / h);
