@@ -43,5 +43,5 @@ configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/stylet-config.cmake.in $
                               INSTALL_DESTINATION ${STYLET_CMAKE_DIR})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/stylet-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/stylet-config.cmake ${PROJECT_BINARY_DIR}/stylet-config-version.cmake
-              ${CMAKE_CURRENT_LIST_DIR}/FindCholmod.cmake
+              ${CMAKE_CURRENT_LIST_DIR}/FindCholmod.cmake ${CMAKE_CURRENT_LIST_DIR}/FindMetis.cmake
         DESTINATION ${STYLET_CMAKE_DIR})
