@@ -29,4 +29,7 @@ class VtkMessages : public vtkOutputWindow {
   bool failed_ = false;
 };
 
+/// From here on VTK says nothing on the terminal. Its writers return whether they failed.
+void silence_vtk();
+
 }  // namespace stylet::detail

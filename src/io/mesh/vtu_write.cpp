@@ -2,6 +2,7 @@
 // Writer of VTU files with VTK: appended raw data; frame and unit are field data. Fields are written with single
 // precision and nothing is compressed, because a run writes a file for each of its frames: zlib would take longer than
 // all the rest.
+#include "detail/vtk_messages.hpp"
 #include "stylet/io/files.hpp"
 #include "stylet/io/mesh_io.hpp"
 
@@ -56,6 +57,7 @@ Result<> add_fields(vtkDataSetAttributes& attributes, const std::vector<MeshFiel
 
 Result<> write_vtu(const TetMesh& mesh, const std::filesystem::path& path, const std::vector<MeshField>& node_fields,
                    const std::vector<MeshField>& tet_fields) {
+  detail::silence_vtk();
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   points->SetNumberOfPoints(mesh.node_count());

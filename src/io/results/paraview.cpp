@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "paraview.hpp"
 
+#include "detail/vtk_messages.hpp"
 #include "output_folder.hpp"
 #include "stylet/io/files.hpp"
 #include "stylet/io/mesh_io.hpp"
@@ -42,8 +43,10 @@ struct PointArray {
   MatX values;
 };
 
-/// The text of a VTP file with the needle's points from base to tip as one line, then the contacts as single points.
+/// The text of a VTP file with the needle's points from base to tip as one line, then the contacts as single points;
+/// empty if VTK cannot make it.
 std::string needle_vtp(const Frame& frame, double diameter) {
+  detail::silence_vtk();
   const auto shaft = static_cast<Eigen::Index>(frame.needle.size());
   const auto count = shaft + static_cast<Eigen::Index>(frame.contacts.size());
   PointArray arc{"arc_length_mm", MatX::Zero(1, count)}, radius{"radius_mm", MatX::Constant(1, count, diameter / 2)},
@@ -95,8 +98,7 @@ std::string needle_vtp(const Frame& frame, double diameter) {
   vtkNew<vtkXMLPolyDataWriter> writer;
   writer->SetInputData(data);
   writer->SetWriteToOutputString(true);
-  writer->Write();
-  return writer->GetOutputString();
+  return writer->Write() == 1 ? writer->GetOutputString() : std::string();
 }
 
 }  // namespace
@@ -120,7 +122,9 @@ Result<> write_tissue(const RunRecording& run, const std::function<MatX(const Ve
 Result<> write_needle(const RunRecording& run, std::size_t deepest, const fs::path& folder) {
   for (std::size_t f = 0; f < run.frames.size(); ++f) {
     const std::string vtp = needle_vtp(run.frames[f], run.info.needle_diameter_mm);
-    if (auto done = write_whole_file(folder / series_name("needle", f, ".vtp"), vtp); !done) return done;
+    const fs::path file = folder / series_name("needle", f, ".vtp");
+    if (vtp.empty()) return failure(file.string(), "VTK cannot make the file", "Close other programs, then run again");
+    if (auto done = write_whole_file(file, vtp); !done) return done;
     if (f != deepest) continue;
     if (auto done = write_whole_file(folder / "needle.vtp", vtp); !done) return done;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Files that appear whole or not at all, and what is left of those of killed processes.
 #include "detail/unfinished.hpp"
+#include "detail/vtk_messages.hpp"
 #include "stylet/io/files.hpp"
 #include "stylet/io/remarks.hpp"
 #include "support/folder.hpp"
@@ -11,6 +12,8 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <vtkNew.h>
+#include <vtkPoints.h>
 
 #include <csignal>
 
@@ -181,6 +184,15 @@ TEST(Folders, are_made_with_those_above_them) {
   EXPECT_FALSE(check_writable(folder / "none"));
   EXPECT_TRUE(check_writable(folder.path()));
   EXPECT_EQ(names_in(folder.path()), (Names{"a", "file"}));
+}
+
+TEST(Vtk, says_nothing_on_the_terminal_once_files_are_written) {
+  const vtkNew<vtkPoints> points;
+  detail::silence_vtk();
+  ::testing::internal::CaptureStderr();
+  vtkGenericWarningMacro("a warning");
+  vtkErrorWithObjectMacro(points, "an error");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
 }  // namespace
