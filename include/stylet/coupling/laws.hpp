@@ -110,7 +110,7 @@ struct CouplingSettings {
   /// From this number of contacts at rest on, needles at rest follow a needle that is balanced alone, instead of being
   /// balanced with it; at least 1. Raised, more contacts are balanced together, which is exact and slow.
   int follow_from = 48;
-  int spare_nodes = 1500;                       ///< room for nodes whose compliance is computed after the start
+  int spare_nodes = 1500;  ///< room for nodes whose compliance is computed after the start
   /// Coupled solver: a balance has converged when the largest error, as a force, is below this part of the largest
   /// force or of 1 N.
   double tolerance = 1e-8;

@@ -83,7 +83,7 @@ Vec3 RestingHold::more_of_tip(int contact, const TipRelief& relief) const {
   return compliance(ContactCompliance::kTip, contact) * all_.tip.force - relief.of(all_.point(contact));
 }
 
-/// [mm] How far a contact slides in the sub-step, towards the needle's tip.
+/// [mm] How far a contact slides in the sub-step, towards the needle's base.
 double RestingHold::away(const ShaftContact& contact, int c) const {
   if (contact.sticks()) return 0.0;
   const Vec3& t = whole_.rows().frame[static_cast<std::size_t>(c)].col(2);
@@ -321,7 +321,6 @@ RestingHold::Followed RestingHold::follow(Step& step) {
 
   ContactStates& states = whole_.states();
   const ContactRows& rows = whole_.rows();
-  bool changed = false;
   auto error = work_.columns.col(0);
   for (int c = 1; c < all_.first_own(); ++c) {
     ShaftContact& contact = all_.of_shaft(c);
@@ -329,15 +328,12 @@ RestingHold::Followed RestingHold::follow(Step& step) {
     const double axial = t.dot(contact.force + force.segment<3>(3 * c - 3));
     const ContactStates::Trial trial{.axial = axial,
                                      .slides = contact.sticks() ? 0.0 : ContactStates::way(contact, axial)};
-    error[c] = 0.0;
     if (states.contradiction(c, trial) <= kNoContradiction_N) continue;
-    if (!changed) error.setZero();
     error[c] = -away(contact, c);
     work_.changing.push_back(c);
     states.change(c, trial, step);
-    changed = true;
   }
-  if (!changed) {
+  if (work_.changing.empty()) {
     for (int c = 1; c < all_.first_own(); ++c) {
       ShaftContact& contact = all_.of_shaft(c);
       contact.force += force.segment<3>(3 * c - 3);
