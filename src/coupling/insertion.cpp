@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/coupling/insertion.hpp"
 
-#include "coupling/balance/coupled_balance.hpp"
+#include "coupling/balance/lone_balance.hpp"
 #include "coupling/balance/needle_bundle.hpp"
-#include "coupling/balance/resting_hold.hpp"
 #include "coupling/needle_in_tissue.hpp"
 #include "coupling/paper/staggered_balance.hpp"
 #include "coupling/room_watch.hpp"
@@ -95,7 +94,6 @@ struct Insertion::Parts {
   /// @return false where the needle stays in the air
   bool enter(Step& step);
   bool find_balance(double h, bool may_give_up, Step& step);
-  bool balance_alone(const Pose& from, const Pose& to, double h, Step& step);
   double end_balance(double h, bool on_bone, bool found, Step& step);
   bool move_on(const Pose& from, const Pose& to, double h, int level, Step& step);
   void end_move(double h, Step& step);
@@ -128,11 +126,7 @@ struct Insertion::Parts {
   std::unique_ptr<NeedleBundle> bundle;
   std::unique_ptr<Predictor> predictor;
   std::unique_ptr<BalanceSolver> balance;
-  // Where many contacts rest, they follow a needle that is balanced alone.
-  std::unique_ptr<Predictor> predictor_alone;
-  std::unique_ptr<CoupledBalance> alone;
-  std::unique_ptr<RestingHold> hold;
-  bool was_alone = false;  ///< whether the last balance was that of the held needle alone
+  std::unique_ptr<LoneBalance> alone;  ///< of the held needle, where many contacts rest
   RoomWatch room;
   int first_level = 0;    ///< parts of this level are tried first in the next sub-step; 0: all of it
   int deepest_level = 0;  ///< the deepest level of this sub-step
@@ -176,9 +170,7 @@ void Insertion::Parts::make_balance() {
     if (at_rest.empty() || at_rest.back().needle != contact.needle) at_rest.push_back({(*of)->needle.get(), 0});
     ++at_rest.back().contacts;
   }
-  hold.reset();
   alone.reset();
-  was_alone = false;
   balance.reset();
   bundle.reset();
   if (!at_rest.empty()) bundle = std::make_unique<NeedleBundle>(*held->needle, at_rest, settings.capacity + 1);
@@ -194,15 +186,7 @@ void Insertion::Parts::make_balance() {
   } else {
     auto whole = std::make_unique<CoupledBalance>(parts);
     if (held->shaft.others() >= static_cast<std::size_t>(settings.follow_from)) {
-      predictor_alone = std::make_unique<Predictor>(held->needle->state().size());
-      const BalanceParts own{.settings = settings,
-                             .contacts = {*held->needle, tissue, held->path.tip, held->shaft, nullptr, true},
-                             .path = held->path,
-                             .hand = held->hand,
-                             .predictor = *predictor_alone,
-                             .most_contacts = settings.capacity};
-      alone = std::make_unique<CoupledBalance>(own);
-      hold = std::make_unique<RestingHold>(parts.contacts, *whole, settings.capacity + 1, most_points(settings) + 1);
+      alone = std::make_unique<LoneBalance>(parts, *whole, *held->needle, most_points(settings) + 1);
     }
     balance = std::move(whole);
   }
@@ -283,8 +267,7 @@ Result<> Insertion::Parts::take_up(int number) {
   if (!rest_tip())
     return failure("Insertion::take_up", "there is no room for the contact of a tip that comes to rest",
                    "Raise CouplingSettings::capacity");
-  hold.reset();  // they refer to the needle that comes to rest
-  alone.reset();
+  alone.reset();  // it refers to the needle that comes to rest
   balance.reset();
   next->shaft.take_over(held->shaft);
   held = next;
@@ -320,10 +303,7 @@ void Insertion::Parts::finish_insertion(Step& step) {
   held->path.finish();
   held->shaft.clear();
   balance->release();
-  if (hold) {
-    hold->forget();
-    alone->release();
-  }
+  if (alone) alone->release();
   held->damping.forget();
   balance->damp(0.0);
   if (!others_rest()) tissue.let_go();
@@ -335,12 +315,11 @@ void Insertion::Parts::finish_insertion(Step& step) {
 void Insertion::Parts::place(const Pose& pose) {
   Step unused;
   if (!held->path.in_air()) finish_insertion(unused);
-  if (hold) hold->forget();
+  if (alone) alone->forget();
   if (tissue.is_relaxing()) tissue.reset();
   room.forget();
   forget_tangents();
   predictor->forget();
-  if (hold) predictor_alone->forget();
   held->base = pose;
   held->needle->set_base(pose);
   settle_in_air(unused);
@@ -351,7 +330,7 @@ void Insertion::Parts::place(const Pose& pose) {
 /// Moves a needle in the air, and tests whether it meets the patient.
 bool Insertion::Parts::enter(Step& step) {
   predictor->interrupt();
-  if (hold) predictor_alone->interrupt();
+  if (alone) alone->interrupt();
   settle_in_air(step);
   const bool arrived = held->path.move_through_air(step);
   if (!held->path.in_air()) {
@@ -382,7 +361,7 @@ bool Insertion::Parts::find_balance(double h, bool may_give_up, Step& step) {
   const double cut = end_balance(h, on_bone, found, step);
   step.flags |= flags_before;
   predictor->end(cut, steady, needles_in_balance(), tip, held->shaft.all());
-  if (hold) hold->balanced(h, found);
+  if (alone) alone->balanced(h, found);
   return true;
 }
 
@@ -396,61 +375,26 @@ double Insertion::Parts::end_balance(double h, bool on_bone, bool found, Step& s
   return cut;
 }
 
-/// Balances the held needle alone, while those at rest follow.
-/// @return false, with nothing changed but a surface that broke, where all needles have to be balanced together
-bool Insertion::Parts::balance_alone(const Pose& from, const Pose& to, double h, Step& step) {
-  if (!hold || !hold->begin(h)) return false;
-  TipContact& tip = held->path.tip;
-  const bool on_bone = tip.is_on_bone();
-  if (!std::exchange(was_alone, true)) {
-    forget_tangents();
-    predictor_alone->interrupt();
-  }
-  alone->damp(held->damping.in_step(h, on_bone, false) / h);
-  alone->begin();
-  predictor_alone->begin(from, to, *held->needle, tip, held->shaft.own());
-  alone->base_moved(predictor_alone->last_motion());
-  const unsigned flags_before = std::exchange(step.flags, 0u);
-  auto followed = RestingHold::Followed::again;
-  bool steady = false;
-  while (followed == RestingHold::Followed::again) {
-    tissue.hold_by(hold.get(), hold->points());
-    Effort effort(1 + static_cast<int>(held->shaft.own().size()));
-    steady = alone->solve(h, effort, step);
-    tissue.hold_by(nullptr);
-    const bool found = (step.flags & (Step::not_converged | Step::contact_cycling)) == 0;
-    followed = found ? hold->follow(step) : RestingHold::Followed::no;
-    if (followed == RestingHold::Followed::done) break;
-    predictor_alone->go_back(*held->needle, tip, held->shaft.own());
-    if (followed == RestingHold::Followed::again) hold->start_again();
-  }
-  const bool found = followed == RestingHold::Followed::done;
-  if (found) {
-    const double cut = end_balance(h, on_bone, true, step);
-    predictor_alone->end(cut, steady, *held->needle, tip, held->shaft.own());
-  } else {
-    hold->take_back();
-    step.flags = 0;
-  }
-  step.flags |= flags_before;
-  return found;
-}
-
 /// Moves the base from one pose to another in h seconds. @param level how often the sub-step has been divided
 /// @return as find_balance()
 bool Insertion::Parts::move_on(const Pose& from, const Pose& to, double h, int level, Step& step) {
   held->base = to;
   held->needle->set_base(to);
   tissue.begin(h);
-  if (level == 0 && balance_alone(from, to, h, step)) {
-    end_move(h, step);
-    return true;
+  const double damping = held->damping.in_step(h, held->path.tip.is_on_bone(), level > 0) / h;
+  if (alone && level == 0) {
+    const bool on_bone = held->path.tip.is_on_bone();
+    if (alone->solve(from, to, h, damping, step)) {
+      alone->end(end_balance(h, on_bone, true, step));
+      end_move(h, step);
+      return true;
+    }
   }
-  if (std::exchange(was_alone, false)) {
+  if (alone && alone->gives_way()) {
     forget_tangents();
     predictor->interrupt();
   }
-  balance->damp(held->damping.in_step(h, held->path.tip.is_on_bone(), level > 0) / h);
+  balance->damp(damping);
   predictor->begin(from, to, needles_in_balance(), held->path.tip, held->shaft.all());
   balance->base_moved(predictor->last_motion());
   const int most_levels = settings.solver == CouplingSettings::Solver::staggered ? 1 : kMostLevels;

@@ -53,9 +53,13 @@ class TissueResponse {
   /// [mm/N] Displacement of a point by a force on another point during this sub-step: A, and the creep in this
   /// sub-step.
   [[nodiscard]] Mat3 compliance_now(int point, int other) const {
+    const Mat3 own = own_compliance_now(point, other);
+    return hold_ != nullptr ? Mat3(own - hold_->reduction(point, other)) : own;
+  }
+  /// The same without what needles at rest take off it.
+  [[nodiscard]] Mat3 own_compliance_now(int point, int other) const {
     Mat3 now = (*compliance_)(point, other);
     if (const double share = memory_.share(); share > 0.0) now += share * compliance_->wide(point, other);
-    if (hold_ != nullptr) now -= hold_->reduction(point, other);
     return now;
   }
   /// Prepares past_displacement() for calls with many points.

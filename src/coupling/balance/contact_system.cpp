@@ -268,13 +268,16 @@ bool ContactSystem::solve(TipRows held) {
   return fits_;
 }
 
-// NOLINTNEXTLINE(performance-unnecessary-value-param): the result is written through its view
-bool ContactSystem::settle_rest(Eigen::Ref<VecX> force) {
+bool ContactSystem::settle_rest() {
   if (!resting_.follow()) return false;
   resting_.move_tip();
   resting_.solve_all(true);
   resting_.solve(A, needle);
-  resting_.settle(push, force);
+  auto forces = work_.head(first_row());
+  resting_.settle(push, forces);
+  for (Eigen::Index c = 1; 3 * c < first_row(); ++c)
+    lambda.segment<3>(3 * c).noalias() =
+        rows_.frame[static_cast<std::size_t>(c)].transpose() * forces.segment<3>(3 * c);
   return true;
 }
 

@@ -75,9 +75,9 @@ class ContactSystem {
   /// Whether errors of needles at rest are solved for however small they are (RestingGrips).
   void solve_all_at_rest(bool all) { resting_.solve_all(all); }
 
-  /// Solves for the contacts at rest alone, with unchanged forces on the moved needle. Their `push` is written.
-  /// @param force [N] LPS (rows) their forces on the tissue are written @return false where their matrix is outdated
-  [[nodiscard]] bool settle_rest(Eigen::Ref<VecX> force);
+  /// Solves for the contacts at rest alone, with unchanged forces on the moved needle. Their `push` and `lambda` are
+  /// written. @return false where their matrix is outdated
+  [[nodiscard]] bool settle_rest();
   [[nodiscard]] RestingGrips& resting() { return resting_; }
 
   /// Adds the tip with the present A and N in the next solve(). Valid as long as neither the tip nor the matrix changes

@@ -103,8 +103,7 @@ CoupledBalance::CoupledBalance(const BalanceParts& parts)
       states_(parts_.contacts),
       tissue_(system_, parts.most_contacts + 1),
       tangent_(parts_.contacts.needle, system_, rows_, parts.most_contacts + 1),
-      kept_(parts_.contacts.needle.state().size(), parts.most_contacts),
-      at_rest_(VecX::Zero(3 * static_cast<Eigen::Index>(parts_.contacts.first_own()))) {}
+      kept_(parts_.contacts.needle.state().size(), parts.most_contacts) {}
 
 void CoupledBalance::march(double advance) { parts_.contacts.tip.cut.march(advance); }
 
@@ -356,12 +355,10 @@ bool CoupledBalance::settle_rest(double h) {
                                        contacts.bundle->residual_of_resting(rows_.loads()) / moment());
     const bool fit = tangent_.relax_resting(contacts);
     rows_.tip.cut_per_N = 0.0;
-    if (!system_.settle_rest(at_rest_)) return false;
+    if (!system_.settle_rest()) return false;
     for (int c = 1; c < contacts.first_own(); ++c) {
       rows_.loads()[static_cast<std::size_t>(c)].force = -system_.push.segment<3>(3 * c);
-      contacts.force(c) = at_rest_.segment<3>(3 * c);
-      system_.lambda.segment<3>(3 * c).noalias() =
-          rows_.frame[static_cast<std::size_t>(c)].transpose() * contacts.force(c);
+      contacts.force(c).noalias() = rows_.frame[static_cast<std::size_t>(c)] * system_.lambda.segment<3>(3 * c);
     }
     contacts.bundle->advance_resting(rows_.loads());
     for (int c = 1; c < contacts.first_own(); ++c) slide(c);

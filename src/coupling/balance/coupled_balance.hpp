@@ -72,7 +72,6 @@ class CoupledBalance : public BalanceSolver {
   double largest_at_start_ = 0.0;  ///< [N] largest force of a contact at the start of the sub-step
   double error_of_rest_ = 0.0;     ///< error of needle and shaft contacts in the last look(), over the tolerance
   CutSearch search_;               ///< the length of cut
-  VecX at_rest_;                   ///< [N] LPS (3 first own) work space: forces of the contacts at rest
 };
 
 }  // namespace stylet

@@ -9,6 +9,7 @@ HeldTissue::HeldTissue(int grips, int most_others) {
   const Eigen::Index others = 3 * static_cast<Eigen::Index>(grips > 0 ? most_others : 0);
   A_ = solved_ = MatX::Zero(RestingMatrix::most_rows(grips), others);
   of_sliding_ = slipped_ = MatX::Zero(grips, others);
+  answer_ = MatX::Zero(grips, 2);
   whole_ = reduction_ = MatX::Zero(others, others);
 }
 
@@ -29,9 +30,14 @@ void HeldTissue::extend(const Eigen::Ref<const MatX>& A, Eigen::Index at, const 
 }
 
 void HeldTissue::add(const Eigen::Ref<const MatX>& A, RestingMatrix& matrix, const SlidingRows& sliding) {
+  next(matrix) = A;
+  add_next(matrix, sliding);
+}
+
+void HeldTissue::add_next(RestingMatrix& matrix, const SlidingRows& sliding) {
   const Eigen::Index at = others();
   ++known_;
-  extend(A, at, matrix);
+  for (Eigen::Index k = 0; k < 3; ++k) matrix.fill_springs(A_.col(at + k).head(matrix.rows()));
   auto solved = solved_.block(0, at, matrix.rows(), 3);
   solved = A_.block(0, at, matrix.rows(), 3);
   matrix.solve(solved);
@@ -87,11 +93,11 @@ void HeldTissue::displacement(const Eigen::Ref<const VecX>& forces, Eigen::Ref<V
 }
 
 void HeldTissue::answer(const Eigen::Ref<const MatX>& Y, const RestingMatrix& matrix, const SlidingRows& sliding,
-                        Eigen::Ref<MatX> motion, Eigen::Ref<MatX> of_sliding) const {
+                        Eigen::Ref<MatX> motion) {
   dense::transposed_product(motion, solved_.topLeftCorner(Y.rows(), others()), Y);
   const Eigen::Index s = sliding.count();
   if (s == 0) return;
-  auto of = of_sliding.topRows(s);
+  auto of = answer_.topRows(s);
   sliding.answer(Y, matrix, of);
   motion.noalias() -= slipped_.topLeftCorner(s, others()).transpose().lazyProduct(of);
 }

@@ -25,6 +25,9 @@ class HeldTissue {
   /// Adds a shaft contact after those that are there.
   /// @param A [mm/N] (3 grips × 3) displacements of the contacts at rest by forces there
   void add(const Eigen::Ref<const MatX>& A, RestingMatrix& matrix, const SlidingRows& sliding);
+  /// The same in two steps. @return the columns of A, to be written
+  auto next(const RestingMatrix& matrix) { return A_.block(0, others(), matrix.contact_rows(), 3); }
+  void add_next(RestingMatrix& matrix, const SlidingRows& sliding);
   /// Writes the columns Sᵀ A_rt of a tip at a new place; B⁻¹ of them has to follow in set_tip().
   /// @param A [mm/N] (3 grips × 3)
   auto begin_tip(const Eigen::Ref<const MatX>& A, const RestingMatrix& matrix) {
@@ -43,9 +46,9 @@ class HeldTissue {
   /// A_or λ. @param forces [N] λ, on the tissue at the contacts at rest (3 grips) @param motion (3 known) written
   void displacement(const Eigen::Ref<const VecX>& forces, Eigen::Ref<VecX> motion) const;
   /// A_or S B⁻¹ Y, after the sliding contacts have yielded, without a solution for it.
-  /// @param Y [mm] (rows × k) @param motion (3 known × k) written @param of_sliding (most sliding × k) work space
+  /// @param Y [mm] (rows × 2) @param motion (3 known × 2) written
   void answer(const Eigen::Ref<const MatX>& Y, const RestingMatrix& matrix, const SlidingRows& sliding,
-              Eigen::Ref<MatX> motion, Eigen::Ref<MatX> of_sliding) const;
+              Eigen::Ref<MatX> motion);
   /// z −= B⁻¹ Sᵀ A_ro Δ. @param forces [N] (3 known) Δ
   void subtract(const Eigen::Ref<const VecX>& forces, Eigen::Ref<VecX> z) const;
 
@@ -59,6 +62,7 @@ class HeldTissue {
   MatX solved_;      ///< (rows × 3 others) B⁻¹ Sᵀ A_ro
   MatX of_sliding_;  ///< (sliding × 3 others) Eᵀ B⁻¹ Sᵀ A_ro, with E of SlidingRows
   MatX slipped_;     ///< (sliding × 3 others) the same after SlidingRows::divide()
+  MatX answer_;      ///< (sliding × 2) work space
   MatX whole_;       ///< (3 others × 3 others) the reduction without sliding
   MatX reduction_;   ///< (3 others × 3 others) with it
 };

@@ -65,14 +65,12 @@ class RestingGrips {
 
   /// The solution with unchanged forces on the others; solve() before. @param push, force as in finish()
   void settle(VecX& push, Eigen::Ref<VecX> force);
-  /// Takes a contact of the moved needle that is new. @param A [mm/N] (3 grips × 3)
-  void add(const Eigen::Ref<const MatX>& A) { held_.add(A, matrix_, sliding_); }
 
   // The parts of the equations, for needles at rest that follow the moved one (RestingHold).
   [[nodiscard]] RestingMatrix& matrix() { return matrix_; }
   [[nodiscard]] const RestingMatrix& matrix() const { return matrix_; }
   [[nodiscard]] SlidingRows& sliding() { return sliding_; }
-  [[nodiscard]] const HeldTissue& held() const { return held_; }
+  [[nodiscard]] HeldTissue& held() { return held_; }
 
   /// D in the equations of a contact at rest. @param grip 0: the first one at rest
   [[nodiscard]] Yield yield(int grip) const;
