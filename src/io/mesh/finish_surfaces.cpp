@@ -2,6 +2,7 @@
 #include "mesh/surfaces.hpp"
 
 #include "detail/reach.hpp"
+#include "mesh/vtk_cells.hpp"
 #include "stylet/geom/plausible_size.hpp"
 
 #include <fmt/format.h>
@@ -72,6 +73,9 @@ Result<Surface> to_surface(vtkPolyData& data, std::string name, const std::strin
   surface.points.resize(static_cast<std::size_t>(data.GetNumberOfPoints()));
   for (std::size_t p = 0; p < surface.points.size(); ++p)
     data.GetPoint(static_cast<vtkIdType>(p), surface.points[p].data());
+  const Error damaged = input_error(source, "a triangle refers to a point that is not in the file",
+                                    "The file is truncated or damaged; copy or export it again");
+  if (!cells_are_whole(data.GetPolys()) || !cells_are_whole(data.GetStrips())) return damaged;
   bool is_whole = true;
   const auto add = [&](vtkIdType a, vtkIdType b, vtkIdType c) {
     const vtkIdType count = data.GetNumberOfPoints();
@@ -94,10 +98,7 @@ Result<Surface> to_surface(vtkPolyData& data, std::string name, const std::strin
     for (vtkIdType i = 2; i < count; ++i)
       i % 2 == 0 ? add(ids[i - 2], ids[i - 1], ids[i]) : add(ids[i - 1], ids[i - 2], ids[i]);
   }
-  if (!is_whole) {
-    return input_error(source, "a triangle refers to a point that is not in the file",
-                       "The file is truncated or damaged; copy or export it again");
-  }
+  if (!is_whole) return damaged;
   return surface;
 }
 

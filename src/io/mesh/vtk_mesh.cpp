@@ -3,6 +3,7 @@
 #include "detail/text.hpp"
 #include "detail/vtk_messages.hpp"
 #include "mesh/raw_mesh.hpp"
+#include "mesh/vtk_cells.hpp"
 #include "mesh/vtk_hints.hpp"
 
 #include <fmt/format.h>
@@ -116,7 +117,7 @@ Result<RawMesh> parse_vtk_mesh(const std::filesystem::path& path, bool xml) {
     grid = reader->GetOutput();
     if (reader->GetHeader() != nullptr) header = reader->GetHeader();
   }
-  if (messages->failed() || error != 0 || grid == nullptr) {
+  if (messages->failed() || error != 0 || grid == nullptr || !cells_are_whole(grid->GetCells())) {
     return input_error(source, "the VTK file cannot be read: its data end too early or do not fit their description",
                        "The file is truncated or damaged; copy or export it again");
   }

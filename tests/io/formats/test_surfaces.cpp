@@ -201,6 +201,11 @@ TEST(Surfaces, damaged_files_are_refused) {
   expect_refused(read("thing.obj", "v 0 0 0\nv nan 0 0\nv 0 30 0\nf 1 2 3\n"), {"thing.obj"});
 }
 
+TEST(Surfaces, triangles_that_begin_outside_the_list_of_points_are_refused) {
+  for (const char* offsets : {">-3 6 9 ", ">3 3000 9 ", ">3 2 9 "})
+    expect_refused(read("thing.vtp", replaced(vtp(30), ">3 6 9 ", offsets)), {"thing.vtp", "damaged"});
+}
+
 TEST(Surfaces, glb_with_a_word_where_a_number_belongs_is_refused_as_damaged) {
   std::string bytes = glb(0.03);
   bytes.replace(bytes.find("[1.0,"), 5, "[\"a\",");

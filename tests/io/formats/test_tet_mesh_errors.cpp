@@ -3,6 +3,8 @@
 #include "mesh_files.hpp"
 #include "stylet/io/mesh_io.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 using namespace stylet;
@@ -155,6 +157,26 @@ TEST(TetMeshErrors, meshes_without_tetrahedra_are_refused) {
   expect_refused(
       read_mesh("s.vtk", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 2 2\n"),
       {"no unstructured grid"});
+}
+
+TEST(TetMeshErrors, cells_that_begin_outside_the_list_of_nodes_are_refused) {
+  expect_refused(
+      read_mesh("m.vtk",
+                "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n"
+                "0 0 0 20 0 0 0 20 0 0 0 20\nCELLS 3 11\n-5\n4 0 1 2 3\n4 0 1 2 3\nCELL_TYPES 3\n10 10 10\n"),
+      {"m.vtk", "do not fit their description"});
+  for (const char* offsets : {"-4 4 8", "4 3000 8", "4 8 3000", "40000000 4 8"}) {
+    SCOPED_TRACE(offsets);
+    const std::string xml = fmt::format(
+        "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\"><UnstructuredGrid><Piece NumberOfPoints=\"4\" "
+        "NumberOfCells=\"3\"><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">"
+        "0 0 0 20 0 0 0 20 0 0 0 20</DataArray></Points><Cells><DataArray type=\"Int64\" Name=\"connectivity\" "
+        "format=\"ascii\">0 1 2 3 0 1 2 3</DataArray><DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">{}"
+        "</DataArray><DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">10 10 10</DataArray></Cells></Piece>"
+        "</UnstructuredGrid></VTKFile>",
+        offsets);
+    expect_refused(read_mesh("m.vtu", xml), {"m.vtu", "do not fit their description"});
+  }
 }
 
 TEST(TetMeshErrors, half_a_tetgen_mesh_is_refused) {
