@@ -3,6 +3,7 @@
 // stylet_fuzz --target=NAME [OPTION OF LIBFUZZER…] FOLDER… With --list it prints the name of each target, and of that
 // whose first inputs are its own. Whatever the bytes of a file are, a parser must answer within the limits of the
 // reading program; an exception that it lets out is a fault, though the reading program would catch it.
+#include "child.hpp"
 #include "library_faults.hpp"
 #include "reading/table.hpp"
 #include "reading/tasks.hpp"
@@ -131,6 +132,34 @@ fs::path written(std::string_view input) {
   return target.task == detail::kOnlyPatient.name ? fuzzer->folder : path;
 }
 
+/// How many faults of the library that reads the files a process may have before the one that ends it; none if it need
+/// not end.
+std::optional<int> faults_of_process() {
+  constexpr int kPly = 100;  // VTK's reader faults at every other file, mostly before it has written anything
+  switch (fuzzer->target.kind) {
+    case detail::FileKind::ply:
+      return kPly;
+    case detail::FileKind::gmsh:
+    case detail::FileKind::medit:
+    case detail::FileKind::obj:
+    case detail::FileKind::glb:
+    case detail::FileKind::vtk_legacy:
+    case detail::FileKind::vtu:
+      return 0;
+    default:
+      break;
+  }
+  const std::string& seeds = fuzzer->target.seeds;
+  return seeds == "parse_run_file" || seeds == "parse_implant_file" ? std::optional(0) : std::nullopt;
+}
+
+/// What is slow to start is the same for each child.
+void prepare() {
+  const detail::FileKind kind = fuzzer->target.kind;
+  if (kind == detail::FileKind::gmsh || kind == detail::FileKind::medit) ::dlopen(kGmsh, RTLD_LAZY | RTLD_LOCAL);
+  H5open();
+}
+
 double processor_time_s() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 // The names of these functions are in the report of a finding.
@@ -209,17 +238,34 @@ extern "C" int LLVMFuzzerInitialize(int* count, char*** arguments) {
     std::cerr << "usage: stylet_fuzz --list | --target=NAME [OPTION OF LIBFUZZER…] FOLDER…\n";
     std::_Exit(2);
   }
+  if (faults_of_process()) {
+    fuzz::keep_stderr_for_children();
+    // No thread beside this one, which could hold a lock when a child is made.
+    static std::vector<char*> all;
+    static std::string no_watch = "-rss_limit_mb=0";
+    all.assign(*arguments, *arguments + *count);
+    all.push_back(no_watch.data());
+    all.push_back(nullptr);
+    *arguments = all.data();
+    ++*count;
+  }
   return 0;
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {
-  [[maybe_unused]] static const bool ready = (fuzz::pass_over_known_faults(), true);
+  [[maybe_unused]] static const bool ready = (fuzz::pass_over_known_faults(), prepare(), true);
+  const auto read = [](std::string_view input) {
+    const double start_s = processor_time_s();
+    if (sigsetjmp(fuzz::after_known_fault, 1) == 0) {
+      run(input, written(input));
+      forget();
+    }
+    if (processor_time_s() - start_s > kPatience_s) a_parser_took_too_long();
+  };
   const std::string_view input(reinterpret_cast<const char*>(data), size);
-  const double start_s = processor_time_s();
-  if (sigsetjmp(fuzz::after_known_fault, 1) == 0) {
-    run(input, written(input));
-    forget();
-  }
-  if (processor_time_s() - start_s > kPatience_s) a_parser_took_too_long();
+  if (const auto faults = faults_of_process())
+    fuzz::run_in_child(input, *faults, read);
+  else
+    read(input);
   return 0;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "library_faults.hpp"
 
+#include "child.hpp"
+
 #include <dlfcn.h>
 #include <execinfo.h>
 #include <fcntl.h>
@@ -50,18 +52,43 @@ bool is_known_place(const Dl_info& library, const void* address) {
   return false;
 }
 
-/// Whether the innermost function on the stack that is none of the language is at a known place.
+/// Whether the innermost function on the stack that is none of the language is at a known place. Functions of the
+/// language that the sanitizer replaces stand in this program, which names them and none of its own to others.
 bool is_known_stack(const void* fault) {
   std::array<void*, 64> stack{};
   const int depth = ::backtrace(stack.data(), static_cast<int>(stack.size()));
   void* const* const end = stack.data() + depth;
+  Dl_info program{};
+  if (::dladdr(reinterpret_cast<const void*>(&is_of_language), &program) == 0) return false;
+  bool is_own = false;
   // Frames of the handler come first. The signal's own frame has the address of the fault.
-  for (void* const* at = std::find<void* const*>(stack.data(), end, fault); at != end; ++at) {
+  void* const* at = fault != nullptr ? std::find<void* const*>(stack.data(), end, fault) : stack.data();
+  for (; at != end; ++at) {
     Dl_info library{};
     if (::dladdr(*at, &library) == 0 || library.dli_fname == nullptr) return false;
-    if (!is_of_language(name_of(library.dli_fname))) return is_known_place(library, *at);
+    if (is_of_language(name_of(library.dli_fname))) continue;
+    if (library.dli_fbase != program.dli_fbase) return !is_own && is_known_place(library, *at);
+    is_own = library.dli_sname == nullptr;
   }
   return false;
+}
+
+/// Whether the stack is full. Which function finds it so is chance: that which calls itself without end stands further
+/// out, at a place that is known.
+bool is_overflow(int signal, const siginfo_t& info, const mcontext_t& machine) {
+  constexpr std::uintptr_t kNear = 1U << 16;
+  const auto address = reinterpret_cast<std::uintptr_t>(info.si_addr);
+  const auto top = static_cast<std::uintptr_t>(machine.gregs[REG_RSP]);
+  return signal == SIGSEGV && address + kNear > top && address < top + kNear;
+}
+
+bool is_known_place_on_stack() {
+  std::array<void*, 64> stack{};
+  const int depth = ::backtrace(stack.data(), static_cast<int>(stack.size()));
+  return std::any_of(stack.data(), stack.data() + depth, [](void* at) {
+    Dl_info library{};
+    return ::dladdr(at, &library) != 0 && library.dli_fname != nullptr && is_known_place(library, at);
+  });
 }
 
 /// Adds a byte to a file that scripts/fuzz measures.
@@ -72,12 +99,15 @@ void count_one() {
 }
 
 void at_signal(int signal, siginfo_t* info, void* context) {
-  const auto* const machine = static_cast<ucontext_t*>(context);
-  if (is_known_stack(reinterpret_cast<void*>(machine->uc_mcontext.gregs[REG_RIP]))) {
+  const mcontext_t& machine = static_cast<ucontext_t*>(context)->uc_mcontext;
+  if (is_known_stack(reinterpret_cast<void*>(machine.gregs[REG_RIP])) ||
+      (is_overflow(signal, *info, machine) && is_known_place_on_stack())) {
     count_one();
+    end_child_at_last_fault();
     siglongjmp(after_known_fault, 1);
   }
   is_signal = true;
+  if (signal == SIGABRT) end_child_by_itself();
   const struct sigaction& theirs = before[static_cast<std::size_t>(signal)];
   ::sigaction(signal, &theirs, nullptr);
   theirs.sa_sigaction(signal, info, context);
@@ -90,20 +120,30 @@ std::string_view place_in(std::string_view line) {
 }
 
 /// A fault that the sanitizer finds in its own version of a function of the language is that of the caller. A write has
-/// happened when the execution goes on, so it ends the fuzzer even if it is known.
+/// happened when the execution goes on, so it ends the fuzzer even if it is known, unless a child is at work.
 void at_report(const char* report) {
   if (is_signal) return;
   const std::string_view text(report);
   const auto caller = text.find("#1 ");
-  const bool harmless = text.find("WRITE of size") == std::string_view::npos;
+  const bool is_write = text.find("WRITE of size") != std::string_view::npos;
   const auto end = std::min(text.find('\n', caller), text.size());
-  if (caller != std::string_view::npos && harmless && is_known(place_in(text.substr(caller, end - caller))))
-    return count_one();
+  if (caller != std::string_view::npos && is_known(place_in(text.substr(caller, end - caller)))) {
+    if (!is_write || is_child()) count_one();
+    if (!is_write) return;
+    end_child_at_known_fault();
+  }
+  end_child_after_report();
   ::sigaction(SIGABRT, &before[SIGABRT], nullptr);
   std::abort();
 }
 
 }  // namespace
+
+void at_end_of_child() {
+  if (is_signal || !is_known_stack(nullptr)) return;
+  count_one();
+  end_child_at_known_fault();
+}
 
 void pass_over_known_faults() {
   const char* const places = std::getenv("STYLET_FUZZ_KNOWN");

@@ -13,6 +13,9 @@ namespace stylet::fuzz {
 /// "libvtkIOXML-9.1.so.1+0x98753". Each of them that happens is counted as a byte of the file "known" in this folder.
 void pass_over_known_faults();
 
+/// For the end of a child after a check of the sanitizer's own, as of memory that a library has damaged.
+void at_end_of_child();
+
 /// Where an execution that a known fault ends goes on. To be set by sigsetjmp() before each.
 extern sigjmp_buf after_known_fault;
 
