@@ -12,8 +12,7 @@ namespace stylet {
 /// changes its state, and their answer −B⁻¹ E e. Nothing allocates after construction.
 class RestingErrors {
  public:
-  explicit RestingErrors(int grips)
-      : mm_(static_cast<std::size_t>(grips)), rows_(MatX::Zero(RestingMatrix::most_rows(grips), 1)) {
+  explicit RestingErrors(int grips) : mm_(static_cast<std::size_t>(grips)) {
     of_.reserve(static_cast<std::size_t>(grips));
   }
 
@@ -29,14 +28,12 @@ class RestingErrors {
   /// Adds to the error of a contact that has one.
   void add(int grip, double mm) { mm_[static_cast<std::size_t>(grip)] += mm; }
 
-  /// Adds the answer to z (rows), before sliding contacts yield in it, and clears the errors. Contacts without a solved
-  /// column are solved for together.
-  void answer(RestingMatrix& matrix, const SlidingRows& sliding, VecX& z);
+  /// Adds the answer to z (rows), before sliding contacts yield in it, and clears the errors.
+  void answer(RestingMatrix& matrix, SlidingRows& sliding, VecX& z);
 
  private:
   std::vector<int> of_;
   std::vector<double> mm_;  ///< (grips)
-  MatX rows_;               ///< [mm] (rows × 1) right-hand side
 };
 
 }  // namespace stylet

@@ -54,9 +54,7 @@ SlidingRows::Change SlidingRows::follow(std::span<const Yield> yields, RestingMa
   if (!differs && same == sliding_.size()) return Change::none;
   sliding_.resize(same);
 
-  for (const Sliding& sliding : sliding_) {
-    if (!known_[static_cast<std::size_t>(sliding.grip)].known) solve_column(sliding.grip, matrix);
-  }
+  for (const Sliding& sliding : sliding_) know(sliding.grip, matrix);
   for (Eigen::Index j = 0; j < count(); ++j) {
     const Sliding& one = sliding_[static_cast<std::size_t>(j)];
     for (Eigen::Index i = 0; i < count(); ++i)

@@ -28,11 +28,14 @@ class SlidingRows {
   /// [mm/N] Yield of a contact along its needle beyond that in B.
   [[nodiscard]] double more(int grip) const;
 
-  /// B⁻¹ e of a contact that slides or has slid; its first rows() of the matrix.
+  /// Solves for B⁻¹ e of a contact if it is not known yet.
+  void know(int grip, RestingMatrix& matrix) {
+    if (!known_[static_cast<std::size_t>(grip)].known) solve_column(grip, matrix);
+  }
+  /// B⁻¹ e of a contact that is known, as those that slide are (rows).
   [[nodiscard]] auto column(int grip, const RestingMatrix& matrix) const {
     return columns_.col(grip).head(matrix.rows());
   }
-  [[nodiscard]] bool is_known(int grip) const { return known_[static_cast<std::size_t>(grip)].known; }
 
   // NOLINTBEGIN(performance-unnecessary-value-param): the results are written through their views
   /// Zᵀ Y. @param Y (rows × k) @param of (count × k) written
