@@ -7,8 +7,8 @@
 
 namespace stylet {
 
-/// What needles at rest do to the tissue, as the needle that the hand moves feels it while it is balanced alone: they
-/// hold the tissue, so that it yields less at the moved needle's points, and they displace it.
+/// The effect of needles at rest on the tissue, as the needle that the hand moves feels it while it is balanced alone:
+/// they hold the tissue, so that it yields less at the moved needle's points, and they displace it.
 class TissueHold {
  public:
   virtual ~TissueHold() = default;

@@ -19,7 +19,7 @@
 #include <cstdlib>
 #include <cstring>
 
-// What clang counts: how often each edge of the program was taken. The linker names both ends.
+// The counters of clang: how often each edge of the program was taken. The linker names both ends of this array.
 extern "C" {
 [[gnu::visibility("hidden")]] extern unsigned char begin_of_counters[] __asm__("__start___sancov_cntrs");
 [[gnu::visibility("hidden")]] extern unsigned char end_of_counters[] __asm__("__stop___sancov_cntrs");

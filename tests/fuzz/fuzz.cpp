@@ -153,7 +153,7 @@ std::optional<int> faults_of_process() {
   return seeds == "parse_run_file" || seeds == "parse_implant_file" ? std::optional(0) : std::nullopt;
 }
 
-/// What is slow to start is the same for each child.
+/// The libraries that are slow to start are started once, before the first child.
 void prepare() {
   const detail::FileKind kind = fuzzer->target.kind;
   if (kind == detail::FileKind::gmsh || kind == detail::FileKind::medit) ::dlopen(kGmsh, RTLD_LAZY | RTLD_LOCAL);

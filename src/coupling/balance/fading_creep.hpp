@@ -7,9 +7,9 @@
 
 namespace stylet {
 
-/// What the tissue's memory still moves at rest after a look at all laws (RestingHold). Under constant forces λ the
-/// memory m goes to λ, and (r − 1) F (m − λ) fades by the same factor in each sub-step. Nothing allocates after
-/// construction.
+/// The displacement of the contacts at rest by which the tissue has still to creep, after a look at all laws
+/// (RestingHold). Under constant forces λ the memory m goes to λ, and (r − 1) F (m − λ) fades by the same factor in
+/// each sub-step. Nothing allocates after construction.
 class FadingCreep {
  public:
   /// @param points largest number of points of the compliance
