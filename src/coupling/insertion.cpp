@@ -109,6 +109,11 @@ struct Insertion::Parts {
 
   /// The forces of all contacts, and those of the held needle alone.
   [[nodiscard]] ContactForces forces() const { return {held->path.tip.force, held->shaft.all()}; }
+  /// The same for those who look at them between steps.
+  [[nodiscard]] ContactForces shown_forces() const {
+    if (alone) alone->show();
+    return forces();
+  }
   [[nodiscard]] ContactForces own_forces() const { return {held->path.tip.force, std::as_const(held->shaft).own()}; }
   /// Whether another needle is in the tissue.
   [[nodiscard]] bool others_rest() const;
@@ -264,6 +269,7 @@ Result<> Insertion::Parts::take_up(int number) {
                    fmt::format("Give a number from 0 to {}", needles.size() - 1));
   NeedleInTissue* const next = needles[static_cast<std::size_t>(number)].get();
   if (next == held) return Ok{};
+  if (alone) alone->settle();
   if (!rest_tip())
     return failure("Insertion::take_up", "there is no room for the contact of a tip that comes to rest",
                    "Raise CouplingSettings::capacity");
@@ -582,12 +588,12 @@ std::size_t Insertion::contacts(std::span<ContactState> out) const {
   const TipContact& tip = p.held->path.tip;
   std::size_t count = 0;
   if (tip.holds() && !out.empty()) {
-    const Vec3 at = tip.cut.x() + p.tissue.displacement(ContactCompliance::kTip, p.forces());
+    const Vec3 at = tip.cut.x() + p.tissue.displacement(ContactCompliance::kTip, p.shown_forces());
     out[count++] = {at, tip.force, p.held->needle->length(), 0.0, tip.state() == TipContact::State::stick, true};
   }
   for (const ShaftContact& contact : p.own_forces().shaft) {
     if (count == out.size()) break;
-    const Vec3 at = contact.x + p.tissue.displacement(contact.point, p.forces());
+    const Vec3 at = contact.x + p.tissue.displacement(contact.point, p.shown_forces());
     out[count++] = {at, contact.force, contact.s, contact.length, contact.sticks(), false};
   }
   return count;
@@ -598,9 +604,9 @@ std::vector<ContactState> Insertion::contacts_of(int needle) const {
   const NeedleInTissue& of = *p.needles[static_cast<std::size_t>(needle)];
   if (&of == p.held) return contacts();
   std::vector<ContactState> result;
-  for (const ShaftContact& contact : p.forces().shaft) {
+  for (const ShaftContact& contact : p.shown_forces().shaft) {
     if (contact.needle != of.needle.get()) continue;
-    const Vec3 at = contact.x + p.tissue.displacement(contact.point, p.forces());
+    const Vec3 at = contact.x + p.tissue.displacement(contact.point, p.shown_forces());
     result.push_back({at, contact.force, contact.s, contact.length, contact.sticks(), contact.presses_only});
   }
   return result;
@@ -610,18 +616,18 @@ Vec3 Insertion::hand_force_on(int needle) const {
   const Parts& p = *parts_;
   const NeedleInTissue& of = *p.needles[static_cast<std::size_t>(needle)];
   Vec3 force = of.path.tip.force - of.needle->guide_load().force;
-  for (const ShaftContact& contact : p.forces().shaft) {
+  for (const ShaftContact& contact : p.shown_forces().shaft) {
     if (contact.needle == of.needle.get()) force += contact.force;
   }
   return force;
 }
 
 ContactCompliance::Nodes Insertion::nodes() const {
-  return compliance().nodes(parts_->tissue.present_forces(parts_->forces()));
+  return compliance().nodes(parts_->tissue.present_forces(parts_->shown_forces()));
 }
 
 ContactCompliance::Moment Insertion::moment() const {
-  const ContactForces forces = parts_->forces();
+  const ContactForces forces = parts_->shown_forces();
   const MatX lasting = settings().creep.is_any() ? parts_->tissue.lasting_forces(forces) : MatX(3, 0);
   return compliance().moment(parts_->tissue.present_forces(forces), lasting);
 }
@@ -629,7 +635,7 @@ ContactCompliance::Moment Insertion::moment() const {
 VecX Insertion::displacement() const { return moment().displacement; }
 
 VecX Insertion::mesh_displacement() const {
-  return compliance().mesh_displacement(parts_->tissue.all_forces(parts_->forces()));
+  return compliance().mesh_displacement(parts_->tissue.all_forces(parts_->shown_forces()));
 }
 
 std::optional<Insertion::PointDisplacement> Insertion::displacement_at(const MaterialPoint& at, const Vec3& x) {
@@ -637,7 +643,7 @@ std::optional<Insertion::PointDisplacement> Insertion::displacement_at(const Mat
   // A point without force, which is taken away again, is displaced as the material is.
   const ContactCompliance::Added added = tissue.compliance().add(at, x, Placement::embedded);
   if (added.point < 0) return std::nullopt;
-  const ContactForces forces = parts_->forces();
+  const ContactForces forces = parts_->shown_forces();
   const PointDisplacement u{tissue.displacement(added.point, forces), tissue.lasting_displacement(added.point, forces)};
   tissue.compliance().remove_last_embedded();
   return u;
@@ -654,8 +660,8 @@ std::size_t Insertion::tissue_forces(std::span<TissueForce> out) const {
   const MaterialPoint tip = p.held->path.tip.cut.at();
   std::size_t count = 0;
   for (int point = 0; point < compliance().points(); ++point) {
-    const Vec3 lasting = p.tissue.lasting_force(point, p.forces());
-    const Vec3 force = p.tissue.present_force(point, p.forces()) + lasting;
+    const Vec3 lasting = p.tissue.lasting_force(point, p.shown_forces());
+    const Vec3 force = p.tissue.present_force(point, p.shown_forces()) + lasting;
     if (force.isZero(0.0) && lasting.isZero(0.0)) continue;
     const TissueResponse::Place& place = p.tissue.place(point);
     const bool at_tip = point == ContactCompliance::kTip && tip.tet >= 0;
@@ -681,6 +687,6 @@ double Insertion::compliance_condition() const {
   return values[0] > 0.0 ? values[values.size() - 1] / values[0] : std::numeric_limits<double>::infinity();
 }
 
-double Insertion::tissue_energy() const { return parts_->tissue.energy(parts_->forces()); }
+double Insertion::tissue_energy() const { return parts_->tissue.energy(parts_->shown_forces()); }
 
 }  // namespace stylet

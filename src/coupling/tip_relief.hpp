@@ -44,11 +44,12 @@ class TipRelief {
   [[nodiscard]] const Vec3& linear() const { return dent_.linear; }
   /// φ′
   [[nodiscard]] const Mat3& share() const { return dent_.slope; }
-
- private:
+  /// σ [N]
   [[nodiscard]] Vec3 spared() const { return force_ - dent_.linear; }
+  /// I − φ′
   [[nodiscard]] Mat3 kept() const { return Mat3::Identity() - dent_.slope; }
 
+ private:
   /// ∂(φ′ᵀ w)/∂g [mm/N], the second derivative of φ · w. With e = gᵀ C g, φ = s(e) g and S = 2 ds/de it is S (w (Cg)ᵀ +
   /// (Cg) wᵀ + (w·g) C) + 2 dS/de (w·g) (Cg)(Cg)ᵀ. At g = 0 it has no limit, but is bounded.
   [[nodiscard]] static Mat3 change_of_share(const TipDent& dent, const Vec3& g, const Vec3& w) {

@@ -30,15 +30,17 @@ void TissueMemory::gather(const ContactCompliance& compliance) {
   version_ = compliance.version();
 }
 
-void TissueMemory::gather(const ContactCompliance& compliance, std::span<const int> points) {
+void TissueMemory::gather(const ContactCompliance& compliance, std::span<const int> points, std::span<const int> by) {
   if (!on()) return;
-  const Eigen::Index count = 3 * Eigen::Index{compliance.points()} - 3;
-  const Eigen::Map<const VecX> remembered(remembered_.data() + 3, count);
   for (const int point : points) {
-    const auto columns = compliance.wide().block(3, 3 * point, count, 3);  // or rows: F is symmetric
-    of_shaft_.col(point) = columns.transpose().lazyProduct(remembered);
+    const auto columns = compliance.wide().middleCols<3>(3 * Eigen::Index{point});  // or rows: F is symmetric
+    Vec3 sum = Vec3::Zero();
+    for (const int other : by)
+      sum.noalias() += columns.middleRows<3>(3 * Eigen::Index{other}).transpose() * remembered_.col(other);
+    of_shaft_.col(point) = sum;
   }
   gathered_ = Gathered::some;
+  by_ = by;
   version_ = compliance.version();
 }
 
@@ -48,8 +50,14 @@ Vec3 TissueMemory::displacement(const ContactCompliance& compliance, int point) 
   if (point != tip && gathered_ != Gathered::none && version_ == compliance.version())
     return most() * kept_ * (of_shaft_.col(point) + compliance.wide(point, tip) * remembered_.col(tip));
   const Eigen::Index count = 3 * Eigen::Index{compliance.points()};
-  const Eigen::Map<const VecX> remembered(remembered_.data(), count);
   const auto columns = compliance.wide().block(0, 3 * point, count, 3);  // or rows: F is symmetric
+  if (gathered_ == Gathered::some) {
+    Vec3 sum = columns.middleRows<3>(3 * tip).transpose() * remembered_.col(tip);
+    for (const int other : by_)
+      sum.noalias() += columns.middleRows<3>(3 * Eigen::Index{other}).transpose() * remembered_.col(other);
+    return most() * kept_ * sum;
+  }
+  const Eigen::Map<const VecX> remembered(remembered_.data(), count);
   return most() * kept_ * columns.transpose().lazyProduct(remembered);
 }
 

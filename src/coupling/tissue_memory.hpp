@@ -44,8 +44,9 @@ class TissueMemory {
   /// Sums the displacements by the shaft points' memory, which makes displacement() fast: while the cut advances in a
   /// sub-step, only the tip's terms change.
   void gather(const ContactCompliance& compliance);
-  /// The same for some shaft points only; displacement() must not be asked for others until release().
-  void gather(const ContactCompliance& compliance, std::span<const int> points);
+  /// The same for some shaft points only, by the memory of the points `by` alone and that of the tip; displacement()
+  /// must not be asked for other shaft points until release().
+  void gather(const ContactCompliance& compliance, std::span<const int> points, std::span<const int> by);
   void release() { gathered_ = Gathered::none; }
   /// Displacement of a point by past() on all points [mm].
   [[nodiscard]] Vec3 displacement(const ContactCompliance& compliance, int point) const;
@@ -53,6 +54,12 @@ class TissueMemory {
   /// Ends the sub-step: its forces enter the memory.
   /// @param forces [N] (3 × points) on the tissue
   void end(const Eigen::Ref<const MatX>& forces);
+
+  /// In this sub-step: the forces on a point in earlier ones were larger than those in end(), together by `force` [N].
+  void make_up(int point, const Vec3& force) {
+    remembered_.col(point) += (1.0 - kept_) * force;
+    gathered_ = Gathered::none;
+  }
 
   /// Moves a part of the memory of one point to another.
   void hand_over(int from, int to, double part);
@@ -75,6 +82,7 @@ class TissueMemory {
   MatX of_shaft_;      ///< F m [mm] (3 × points) without the tip's m
   enum class Gathered { none, some, all };
   Gathered gathered_ = Gathered::none;  ///< the columns of of_shaft_ that are valid
+  std::span<const int> by_;             ///< shaft points whose memory counts, where only some columns are valid
   unsigned version_ = 0;                ///< version of the compliance when of_shaft_ was computed
 };
 

@@ -27,11 +27,12 @@ class TissueResponse {
   [[nodiscard]] const ContactCompliance& compliance() const { return *compliance_; }
 
   /// While the needle that the hand moves is balanced alone, the contacts in all questions are its own, and all others
-  /// are in `hold`; null: there are none. @param points of the own shaft contacts
-  void hold_by(const TissueHold* hold, std::span<const int> points = {}) {
+  /// are in `hold`; null: there are none. @param points of the own shaft contacts @param free points without a contact
+  /// at rest, but for the tip
+  void hold_by(const TissueHold* hold, std::span<const int> points = {}, std::span<const int> free = {}) {
     hold_ = hold;
     if (hold != nullptr) {
-      memory_.gather(*compliance_, points);
+      memory_.gather(*compliance_, points, free);
     } else {
       memory_.release();
     }
@@ -109,6 +110,12 @@ class TissueResponse {
   bool move_tip(const MaterialPoint& at, const Vec3& x) { return compliance_->move_tip(at, x); }
   /// Begins the memory of a tip that touches new material, at the end of a track of length xi [mm].
   void begin_tip(double xi);
+
+  /// The forces on a point in earlier sub-steps were larger than those that the tissue remembers, together by `force`
+  /// [N]. To be called in a sub-step.
+  void make_up(int point, const Vec3& force) {
+    if (memory_.on()) memory_.make_up(point, force);
+  }
 
   /// Moves the memory of a tip that comes to rest to the point that stands for it from then on.
   void lay_tip_down(int point) {

@@ -39,6 +39,7 @@ TrackCompliance::TrackCompliance(std::shared_ptr<const ComplianceStore> store, c
       hats_(std::make_unique<AddedHats>(most_observables(capacity, most_nodes_) + TrackObservables::kFirstFree,
                                         most_nodes_)),
       tip_rows_(std::make_unique<TipElementRows>(capacity)) {
+  tip_neighbours_.reserve(capacity + 1);
   point_observable_.reserve(static_cast<std::size_t>(capacity) + 1);
   node_point_.reserve(static_cast<std::size_t>(capacity));
   by_points_.resize(static_cast<std::size_t>(capacity) + 1);
@@ -55,6 +56,7 @@ void TrackCompliance::reset() {
   borders_->reset();
   hats_->reset();
   tip_rows_->reset();
+  tip_neighbours_.reset();
   point_observable_.assign(1, kTipPlace);
   node_point_.clear();
   changes_.clear();
@@ -248,6 +250,7 @@ int TrackCompliance::finish_point(int observable) {
     write_row(points_ - 1, [&](int /*point*/, int of) { return observables_->at(of); });
   }
   write_tip_row();
+  if (!tip_neighbours_.are_all()) write_tip(points_ - 1);
   return points_ - 1;
 }
 
@@ -305,9 +308,22 @@ void TrackCompliance::interpolate_tip(int from) {
 void TrackCompliance::write_tip_row() {
   const auto weights = tip_rows_->element().weights(observables_->shape(kTipPlace));
   if (!weights) return;  // the tip has no place yet
+  if (!tip_neighbours_.are_all()) {
+    tip_neighbours_.for_each(points_, [&](int point) { write_tip(point); });
+    return;
+  }
   const auto row = tip_rows_->combine(*weights, points_ - 1);
   A_.block(0, 3, 3, row.cols()) = row;
   A_.block(3, 0, row.cols(), 3) = A_.block(0, 3, 3, row.cols()).transpose();
+}
+
+/// The same for one point.
+void TrackCompliance::write_tip(int point) {
+  const auto weights = tip_rows_->element().weights(observables_->shape(kTipPlace));
+  if (!weights) return;
+  const Mat3 block = tip_rows_->combine_one(*weights, point);
+  A_.block<3, 3>(0, 3 * point) = block;
+  A_.block<3, 3>(3 * point, 0) = block.transpose();
 }
 
 TrackCompliance::Added TrackCompliance::add(const MaterialPoint& at, const Vec3& x, Placement placement,

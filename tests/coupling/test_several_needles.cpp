@@ -199,11 +199,13 @@ TEST(SeveralNeedles, that_follow_have_the_forces_of_those_balanced_together) {
       const auto quantile = [](const std::vector<double>& off, double part) {
         return off[static_cast<std::size_t>(part * static_cast<double>(off.size() - 1))];
       };
-      // Where a surface breaks or a contact is made a step sooner, the forces of that step differ more.
-      EXPECT_LT(quantile(of_moved, 0.5), 2e-5) << "seed " << seed;
+      // Where a surface breaks or a contact is made a step sooner, the forces of that step differ more. What creeping
+      // tissue remembers is known less exactly.
+      const double more = options.coupling.creep.is_any() ? 2.5 : 1.0;
+      EXPECT_LT(quantile(of_moved, 0.5), 2e-5 * more) << "seed " << seed;
       EXPECT_LT(quantile(of_moved, 0.99), 2e-3) << "seed " << seed;
-      EXPECT_LT(quantile(of_resting, 0.5), 5e-5) << "seed " << seed;
-      EXPECT_LT(quantile(of_resting, 0.99), 2e-3) << "seed " << seed;
+      EXPECT_LT(quantile(of_resting, 0.5), 4e-5 * more) << "seed " << seed;
+      EXPECT_LT(quantile(of_resting, 0.99), 2e-3 * more) << "seed " << seed;
     }
   }
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "stylet/coupling/tip_dent.hpp"
+#include "stylet/coupling/tip_neighbours.hpp"
 #include "stylet/geom/locator.hpp"
 
 #include <limits>
@@ -76,6 +77,15 @@ class ContactCompliance {
   /// Moves the tip to x in base tetrahedron at.tet. @return false, with nothing changed, where compliance is missing
   /// there
   virtual bool move_tip(const MaterialPoint& at, const Vec3& x) = 0;
+
+  /// From here on, moves of the tip update its compliance with these points only, to save time. Its compliance with all
+  /// others remains that of an earlier place until renew_tip() or release_tip(); those that are new here are updated.
+  /// An implementation may always update all.
+  virtual void restrict_tip(std::span<const int> /*points*/) {}
+  /// Updates the compliance of the tip at its present place with points from which it is restricted.
+  virtual void renew_tip(std::span<const int> /*points*/) {}
+  /// Ends restrict_tip(), and updates all.
+  virtual void release_tip() {}
 
   /// Begins a sub-step: wide() is updated at the next move of the tip.
   virtual void begin_sub_step() {}
@@ -191,6 +201,7 @@ class ContactCompliance {
   MatX needle_scale_ = MatX::Zero(3, 3);
   MatX wide_;                    ///< empty: the same as A_
   double stiffening_MPa_ = 0.0;  ///< k₂ of DentLaw at the tip; 0: linear tissue
+  TipNeighbours tip_neighbours_;
 };
 
 }  // namespace stylet

@@ -47,6 +47,15 @@ class TrackCompliance final : public ContactCompliance {
 
   Added add(const MaterialPoint& at, const Vec3& x, Placement placement, const Vec3& travel = Vec3::Zero()) override;
   bool move_tip(const MaterialPoint& at, const Vec3& x) override;
+  void restrict_tip(std::span<const int> points) override {
+    tip_neighbours_.restrict(points, [&](int point) { write_tip(point); });
+  }
+  void renew_tip(std::span<const int> points) override {
+    for (const int point : points) write_tip(point);
+  }
+  void release_tip() override {
+    tip_neighbours_.release(points_, [&](int point) { write_tip(point); });
+  }
   [[nodiscard]] bool available(Index base_tet) const override { return stored(base_tet); }
   void mark_nodes(std::span<unsigned> stamps, unsigned stamp) const override;
   void remove_last_embedded() override;
@@ -94,6 +103,7 @@ class TrackCompliance final : public ContactCompliance {
   void know_tip_node(int number);
   void interpolate_tip(int from);
   void write_tip_row();
+  void write_tip(int point);
 
   std::shared_ptr<const ComplianceStore> store_;
   SplitMesh mesh_;

@@ -9,7 +9,6 @@ HeldTissue::HeldTissue(int grips, int most_others) {
   const Eigen::Index others = 3 * static_cast<Eigen::Index>(grips > 0 ? most_others : 0);
   A_ = solved_ = MatX::Zero(RestingMatrix::most_rows(grips), others);
   of_sliding_ = slipped_ = MatX::Zero(grips, others);
-  answer_ = MatX::Zero(grips, 2);
   whole_ = reduction_ = MatX::Zero(others, others);
 }
 
@@ -90,16 +89,6 @@ void HeldTissue::motion(const Eigen::Ref<const VecX>& z, const RestingMatrix& ma
 
 void HeldTissue::displacement(const Eigen::Ref<const VecX>& forces, Eigen::Ref<VecX> motion) const {
   dense::transposed_product(motion, A_.topLeftCorner(forces.size(), others()), forces);
-}
-
-void HeldTissue::answer(const Eigen::Ref<const MatX>& Y, const RestingMatrix& matrix, const SlidingRows& sliding,
-                        Eigen::Ref<MatX> motion) {
-  dense::transposed_product(motion, solved_.topLeftCorner(Y.rows(), others()), Y);
-  const Eigen::Index s = sliding.count();
-  if (s == 0) return;
-  auto of = answer_.topRows(s);
-  sliding.answer(Y, matrix, of);
-  motion.noalias() -= slipped_.topLeftCorner(s, others()).transpose().lazyProduct(of);
 }
 
 void HeldTissue::subtract(const Eigen::Ref<const VecX>& forces, Eigen::Ref<VecX> z) const {

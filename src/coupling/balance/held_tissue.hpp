@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "core/dense_kernels.hpp"
 #include "coupling/balance/sliding_rows.hpp"
 
 #include <algorithm>
@@ -45,10 +46,25 @@ class HeldTissue {
               Eigen::Ref<VecX> motion) const;
   /// A_or λ. @param forces [N] λ, on the tissue at the contacts at rest (3 grips) @param motion (3 known) written
   void displacement(const Eigen::Ref<const VecX>& forces, Eigen::Ref<VecX> motion) const;
-  /// A_or S B⁻¹ Y, after the sliding contacts have yielded, without a solution for it.
-  /// @param Y [mm] (rows × 2) @param motion (3 known × 2) written
-  void answer(const Eigen::Ref<const MatX>& Y, const RestingMatrix& matrix, const SlidingRows& sliding,
-              Eigen::Ref<MatX> motion);
+  /// Wᵀ Y with the solved columns W = B⁻¹ Sᵀ A_ro, sliding contacts held. @param Y [mm] (rows × k) @param motion
+  /// (3 known × k) written
+  void answers(const Eigen::Ref<const MatX>& Y, Eigen::Ref<MatX> motion) const {
+    dense::transposed_product(motion, solved_.topLeftCorner(Y.rows(), others()), Y);
+  }
+  /// Adds Wᵀ Y for Y whose rows are zero but for those from `from` on. @param work (3 known × k) work space
+  void add_answers(Eigen::Index from, const Eigen::Ref<const MatX>& Y, Eigen::Ref<MatX> motion,
+                   Eigen::Ref<MatX> work) const {
+    dense::transposed_product(work, solved_.block(from, 0, Y.rows(), others()), Y);
+    motion += work;
+  }
+  /// W of the rows from `from` on. @param count their number
+  [[nodiscard]] auto solved(Eigen::Index from, Eigen::Index count) const {
+    return solved_.block(from, 0, count, others());
+  }
+  /// Eᵀ W, with E of SlidingRows, and the same after SlidingRows::divide(). @param count of the sliding contacts
+  [[nodiscard]] auto of_sliding(Eigen::Index count) const { return of_sliding_.topLeftCorner(count, others()); }
+  [[nodiscard]] auto slipped(Eigen::Index count) const { return slipped_.topLeftCorner(count, others()); }
+
   /// z −= B⁻¹ Sᵀ A_ro Δ. @param forces [N] (3 known) Δ
   void subtract(const Eigen::Ref<const VecX>& forces, Eigen::Ref<VecX> z) const;
 
@@ -62,7 +78,6 @@ class HeldTissue {
   MatX solved_;      ///< (rows × 3 others) B⁻¹ Sᵀ A_ro
   MatX of_sliding_;  ///< (sliding × 3 others) Eᵀ B⁻¹ Sᵀ A_ro, with E of SlidingRows
   MatX slipped_;     ///< (sliding × 3 others) the same after SlidingRows::divide()
-  MatX answer_;      ///< (sliding × 2) work space
   MatX whole_;       ///< (3 others × 3 others) the reduction without sliding
   MatX reduction_;   ///< (3 others × 3 others) with it
 };

@@ -30,15 +30,15 @@ bool LoneBalance::find(double h, Step& step) {
   TissueResponse& tissue = contacts_.tissue;
   for (int balances = 1; balances <= kMostBalances; ++balances) {
     Effort effort(contacts_.count());
-    tissue.hold_by(&hold_, hold_.points());
+    tissue.hold_by(&hold_, hold_.points(), hold_.free_points());
     steady_ = balance_.solve(h, effort, step);
     tissue.hold_by(nullptr);
     if ((step.flags & (Step::not_converged | Step::contact_cycling)) != 0) return false;
-    const auto followed = hold_.follow(balances == kMostBalances, step);
+    const auto followed = hold_.follow();
     if (followed == RestingHold::Followed::done) return true;
     if (followed == RestingHold::Followed::no) return false;
     predictor_.go_back(contacts_.needle, contacts_.tip, contacts_.grips());
-    hold_.start_again();
+    if (!hold_.start_again(step)) return false;
   }
   return false;
 }

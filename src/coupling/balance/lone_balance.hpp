@@ -24,18 +24,22 @@ class LoneBalance {
   void balanced(double h, bool found) { hold_.balanced(h, found); }
   /// Whether the balance before the last one was that of the moved needle alone; the last one was not.
   [[nodiscard]] bool gives_way() { return std::exchange(was_last_, false); }
+  /// Writes the present forces to the contacts at rest.
+  void settle() { hold_.settle(); }
+  /// The same for those who look at them between sub-steps; the next sub-step does not depend on it.
+  void show() { hold_.show(); }
   /// The needle's shape was changed from outside.
   void forget_tangent() { balance_.forget_tangent(); }
   /// There was no contact in the sub-step: the next one is not predicted.
   void interrupt() { predictor_.interrupt(); }
   /// The needle is at another place.
   void forget() {
-    hold_.forget();
+    hold_.settle();
     predictor_.forget();
   }
   /// The needle has left the tissue.
   void release() {
-    hold_.forget();
+    hold_.settle();
     balance_.release();
   }
 

@@ -3,12 +3,18 @@
 
 namespace stylet {
 
-void RestingErrors::answer(RestingMatrix& matrix, SlidingRows& sliding, VecX& z) {
+Eigen::Ref<const VecX> RestingErrors::answer(RestingMatrix& matrix, SlidingRows& sliding) {
+  auto z = z_.head(matrix.rows());
+  z.setZero();
   for (const int grip : of_) {
     sliding.know(grip, matrix);  // B itself may have the yield of a contact that slides
-    z.head(matrix.rows()) -= mm_[static_cast<std::size_t>(grip)] * sliding.column(grip, matrix);
+    z -= mm_[static_cast<std::size_t>(grip)] * sliding.column(grip, matrix);
   }
   clear();
+  sliding.yield_in(z, matrix);
+  auto forces = forces_.head(matrix.contact_rows());
+  matrix.forces(z, forces);
+  return forces;
 }
 
 }  // namespace stylet

@@ -12,7 +12,8 @@ namespace stylet {
 /// changes its state, and their answer −B⁻¹ E e. Nothing allocates after construction.
 class RestingErrors {
  public:
-  explicit RestingErrors(int grips) : mm_(static_cast<std::size_t>(grips)) {
+  explicit RestingErrors(int grips)
+      : mm_(static_cast<std::size_t>(grips)), z_(VecX::Zero(RestingMatrix::most_rows(grips))), forces_(z_) {
     of_.reserve(static_cast<std::size_t>(grips));
   }
 
@@ -28,12 +29,13 @@ class RestingErrors {
   /// Adds to the error of a contact that has one.
   void add(int grip, double mm) { mm_[static_cast<std::size_t>(grip)] += mm; }
 
-  /// Adds the answer to z (rows), before sliding contacts yield in it, and clears the errors.
-  void answer(RestingMatrix& matrix, SlidingRows& sliding, VecX& z);
+  /// Clears the errors. @return [N] (3 grips) the answer as changes of the forces, a view of work space
+  [[nodiscard]] Eigen::Ref<const VecX> answer(RestingMatrix& matrix, SlidingRows& sliding);
 
  private:
   std::vector<int> of_;
   std::vector<double> mm_;  ///< (grips)
+  VecX z_, forces_;         ///< work space
 };
 
 }  // namespace stylet

@@ -37,6 +37,8 @@ class RestingGrips {
   /// Marks the tip's columns as outdated, because it has moved.
   void move_tip() { tip_is_new_ = true; }
 
+  /// Whether D has changed such that follow() would change something.
+  [[nodiscard]] bool differs() const { return !matrix_.fits() || sliding_.differs(yields(), matrix_); }
   /// Follows the present D, without a new B. @return whether what the others see belongs to it and to B
   [[nodiscard]] bool follow();
   /// The same, with a new B where that is necessary, and takes the contacts of `side` that are new.
@@ -70,7 +72,9 @@ class RestingGrips {
   [[nodiscard]] RestingMatrix& matrix() { return matrix_; }
   [[nodiscard]] const RestingMatrix& matrix() const { return matrix_; }
   [[nodiscard]] SlidingRows& sliding() { return sliding_; }
+  [[nodiscard]] const SlidingRows& sliding() const { return sliding_; }
   [[nodiscard]] HeldTissue& held() { return held_; }
+  [[nodiscard]] const HeldTissue& held() const { return held_; }
 
   /// D in the equations of a contact at rest. @param grip 0: the first one at rest
   [[nodiscard]] Yield yield(int grip) const;

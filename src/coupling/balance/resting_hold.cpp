@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "coupling/balance/resting_hold.hpp"
 
+#include <algorithm>
+#include <utility>
+
 namespace stylet {
 
 namespace {
 /// Sub-steps from one look at all laws to the next. Raised, what linear equations leave over grows, with its square;
 /// lowered, more sub-steps read the whole compliance among the contacts at rest.
-constexpr int kWindow = 10;
+constexpr int kWindow = 20;
+/// [mm] Length of cut after which the next look is due.
+constexpr double kLongestCut_mm = 1.0;
+/// Sub-steps in which all contacts at rest are visited. Raised, the tip's effect on them is known less exactly, and so
+/// is what the tissue remembers; lowered, a sub-step takes longer.
+constexpr int kTurn = 8;
 /// [N] Contradictions below this are rounding.
 constexpr double kNoContradiction_N = 1e-12;
 }  // namespace
@@ -15,38 +23,91 @@ RestingHold::RestingHold(const Contacts& all, CoupledBalance& whole, int most_ow
     : all_(all),
       whole_(whole),
       kept_(all.shaft.others()),
+      points_(resting(), points),
       own_(most_own, points),
-      start_(VecX::Zero(3 * static_cast<Eigen::Index>(most_own))),
-      moved_(MatX::Zero(start_.size(), 3)),
-      drift_(RestingMatrix::most_rows(grips().count())),
-      creep_(points),
-      solved_(MatX::Zero(RestingMatrix::most_rows(grips().count()), 2)),
-      errors_(grips().count()),
-      z_(solved_.col(0)),
-      force_(z_) {}
+      reach_(grips().count(), most_own),
+      creep_(points, most_own),
+      forces_(grips().count(), most_own),
+      errors_(grips().count()) {
+  contradicted_.reserve(kept_.size());
+}
 
 void RestingHold::balanced(double h, bool found) {
   h_ = found ? h : 0.0;
-  drift_.forget();
+  reach_.forget();
   age_ = kWindow;  // the first sub-step of those that follow begins with a look
+}
+
+void RestingHold::settle() {
+  write_all();
+  all_.tissue.compliance().release_tip();
+}
+
+/// Computes the forces on all contacts at rest.
+void RestingHold::write_all() {
+  hide();
+  if (!forces_.are_known()) return;
+  forces_.follow(own_forces(), grips());
+  forces_.compute(0, grips().count(), grips());
+  const auto forces = forces_.computed(grips());
+  forces_.forget();
+  for (int grip = 0; grip < grips().count(); ++grip) take_force(grip, forces.segment<3>(3 * grip));
+}
+
+/// A contact at rest has this force [N]. The tissue remembers the force before for the sub-steps in between, in which
+/// it has changed steadily.
+void RestingHold::take_force(int grip, const Vec3& force) {
+  Kept& kept = kept_[static_cast<std::size_t>(grip)];
+  ShaftContact& contact = all_.of_shaft(grip + 1);
+  const Vec3 more = force - contact.force;
+  const Vec3 missed = 0.5 * std::max(0, kept.since - 1) * more;
+  if (all_.tissue.memory().on()) {
+    all_.tissue.make_up(contact.point, missed);
+    if (forces_.are_known()) {
+      const Vec3 remembered = (1.0 - all_.tissue.memory().kept()) * missed;
+      creep_.change(all_.tissue.compliance(), own_.all(), contact.point, more, remembered);
+      reach_.change(grip, more, remembered);
+    }
+  }
+  contact.force = force;
+  kept.since = 0;
+}
+
+void RestingHold::show() {
+  if (!forces_.are_known() || std::exchange(shown_, true)) return;
+  forces_.follow(own_forces(), grips());
+  forces_.compute(0, grips().count(), grips());
+  const auto forces = forces_.computed(grips());
+  for (int grip = 0; grip < grips().count(); ++grip) {
+    kept_[static_cast<std::size_t>(grip)].force =
+        std::exchange(all_.force(grip + 1), Vec3(forces.segment<3>(3 * grip)));
+  }
+}
+
+/// Takes back what show() has written.
+void RestingHold::hide() {
+  if (!std::exchange(shown_, false)) return;
+  for (int grip = 0; grip < grips().count(); ++grip) all_.force(grip + 1) = kept_[static_cast<std::size_t>(grip)].force;
 }
 
 void RestingHold::keep() {
   const auto contacts = resting();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     ShaftContact& contact = contacts[i];
-    kept_[i] = {contact.force, contact.s, contact.state, contact.fast};
+    kept_[i] = {contact.force, contact.s, contact.state, contact.fast, kept_[i].since + 1};
     contact.s_start = contact.s;
     contact.state_start = contact.state;
     contact.fast_start = contact.fast;
+    contact.slid = contact.slid_more = 0.0;
+    contact.history = {};
   }
   whole_.begin_states();
 }
 
 void RestingHold::take_back() {
+  settle();
   const auto contacts = resting();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    contacts[i].force = kept_[i].force;
     contacts[i].s = kept_[i].s;
     contacts[i].state = kept_[i].state;
     contacts[i].fast = kept_[i].fast;
@@ -55,64 +116,42 @@ void RestingHold::take_back() {
   h_ = 0.0;
 }
 
-/// [mm] By how much the arc length of a contact on its needle becomes smaller in the sub-step.
-double RestingHold::slides(const ShaftContact& contact, int c) const {
+/// [mm] By how much the arc length of a contact on its needle becomes smaller in the sub-step under a force [N].
+double RestingHold::slides(const ShaftContact& contact, int c, const Vec3& force) const {
   if (contact.sticks()) return 0.0;
   const Vec3& t = whole_.rows().frame[static_cast<std::size_t>(c)].col(2);
-  return contact.sense() * ContactStates::way(contact, t.dot(contact.force));
-}
-
-/// Takes over the present yields of the contacts at rest. @return false where B does not fit any longer
-bool RestingHold::soften() {
-  const std::uint64_t before = grips().version();
-  whole_.rows().soften(all_, h_);
-  if (!grips().follow()) return false;
-  if (grips().version() != before) ++version_;
-  return true;
-}
-
-/// Lets the sliding contacts yield in z_, and adds it to the forces at rest.
-void RestingHold::add_solved() {
-  auto z = z_.head(grips().matrix().rows());
-  grips().sliding().yield_in(z, grips().matrix());
-  auto force = force_.head(grips().matrix().contact_rows());
-  grips().matrix().forces(z, force);
-  for (int c = 1; c < all_.first_own(); ++c) all_.force(c) += force.segment<3>(3 * c - 3);
+  return contact.sense() * ContactStates::way(contact, t.dot(force));
 }
 
 /// Looks at all laws at rest, and takes what linear equations need from there.
 bool RestingHold::look(double h) {
   RestingMatrix& matrix = grips().matrix();
-  auto solved = solved_.topRows(matrix.rows());
-  if (age_ < kWindow) {
-    solved.col(0) = drift_.remember(all_, matrix);
+  auto solved = forces_.columns(matrix);
+  const bool is_usual = age_ < kWindow;
+  if (is_usual) {
+    solved.col(1) = reach_.remember(all_, matrix);
   } else {
-    solved.col(0).setZero();
+    solved.col(1).setZero();
   }
   if (!whole_.settle_rest(h)) return false;
   ++version_;
   age_ = 0;
-  drift_.look(all_, matrix);
-  creep_.look(all_, solved.col(1).head(matrix.contact_rows()));
-  matrix.fill_springs(solved.col(1));
+  reach_.look(all_, matrix);
+  creep_.look(all_, solved.col(0).head(matrix.contact_rows()));
+  matrix.fill_springs(solved.col(0));
   matrix.solve(solved);
   return true;
 }
 
-/// Between looks: the forces at rest follow the creep of this sub-step and the place of the tip, and contacts that
-/// slide begin at their present places.
+/// Between looks: the forces at rest follow the creep of this sub-step, and contacts that slide begin at their present
+/// places.
 void RestingHold::go_on() {
-  RestingMatrix& matrix = grips().matrix();
   ++age_;
-  auto z = z_.head(matrix.rows());
-  z = creep_.fades(all_.tissue.memory()) * solved_.col(1).head(z.size());
+  forces_.creep(creep_.fades(all_.tissue.memory()));
   for (int c = 1; c < all_.first_own(); ++c) {
-    if (const double mm = slides(all_.of_shaft(c), c); mm != 0.0) errors_.set(c - 1, mm);
+    const ShaftContact& contact = all_.of_shaft(c);
+    if (const double mm = slides(contact, c, contact.force); mm != 0.0) forces_.slide(c - 1, mm, grips());
   }
-  errors_.answer(matrix, grips().sliding(), z_);
-  add_solved();
-  z = -drift_.begin(all_, matrix) * solved_.col(0).head(z.size());
-  add_solved();
 }
 
 /// Takes over the moved needle's contacts.
@@ -131,89 +170,113 @@ void RestingHold::take_contacts() {
   own_.take(own);
 }
 
-/// Takes the present forces as those from which the moved needle's are counted.
-void RestingHold::take_start() {
-  HeldTissue& held = grips().held();
-  const Eigen::Index own = held.others();
-  start_.head<3>() = all_.tip.force;
-  for (Eigen::Index at = 3; const ShaftContact& contact : std::as_const(all_.shaft).own()) {
-    start_.segment<3>(at) = contact.force;
-    at += 3;
-  }
-  auto force = force_.head(grips().matrix().contact_rows());
-  for (int c = 1; c < all_.first_own(); ++c) force.segment<3>(3 * c - 3) = all_.force(c);
-  auto moved = moved_.col(0).head(own);
-  held.displacement(force, moved);
-  moved.noalias() += held.reduction().lazyProduct(start_.head(own));
-  held.answer(drift_.at_rest(grips().matrix()), grips().matrix(), grips().sliding(), moved_.block(0, 1, own, 2));
+/// Takes the present forces as those from which changes are counted.
+/// @param columns whether solved columns are new
+void RestingHold::take_start(bool columns) {
+  forces_.take(columns, all_, std::span(whole_.rows().frame).subspan(1), grips(), own_forces());
+  reach_.take(columns, all_, grips(), forces_.reference(grips().matrix()));
+  if (!all_.tissue.memory().on()) return;
+  creep_.take(all_, own_.all());
+  if (columns) points_.take(all_.tissue.compliance().points());
 }
 
 bool RestingHold::begin(double h) {
-  if (h != h_ || all_.tip.cut.is_stale()) return false;
+  hide();
+  if (h != h_ || all_.tip.cut.is_stale()) {
+    settle();
+    return false;
+  }
+  const bool looks = !forces_.are_known() || age_ + 1 >= kWindow || reach_.cut(all_) > kLongestCut_mm ||
+                     !reach_.is_at(all_.tip.cut.x());
+  if (looks) settle();
   keep();
-  const bool fits = soften();
-  const bool looks = age_ + 1 >= kWindow;
+  whole_.rows().soften(all_, h_);
+  const auto own = std::as_const(all_.shaft).own();
+  const bool others = own.size() != own_.all().size() || own_.same(own) != own.size() ||
+                      static_cast<std::size_t>(grips().held().known()) != own.size() + 1;
+  const bool changes = looks || others || grips().differs();
+  if (changes) write_all();
+  const std::uint64_t before = grips().version();
+  const bool fits = grips().follow();
+  if (grips().version() != before) ++version_;
   if (!fits || (looks && !look(h))) {
     take_back();
     return false;
   }
+  if (changes) {
+    take_contacts();
+    take_start(looks || others);
+  }
   if (!looks) go_on();
-  take_contacts();
-  take_start();
+  all_.tissue.compliance().restrict_tip(own_.all());
+  begin_balance();
   return true;
 }
 
-/// Changes the states of contacts at rest that contradict their laws under the forces at rest plus force_, and what
-/// that changes in the forces at the start of the sub-step. @return whether there are any
-bool RestingHold::change_states(Step& step) {
-  ContactStates& states = whole_.states();
-  for (int c = 1; c < all_.first_own(); ++c) {
-    const ShaftContact& contact = all_.of_shaft(c);
-    const Vec3& t = whole_.rows().frame[static_cast<std::size_t>(c)].col(2);
-    const double axial = t.dot(contact.force + force_.segment<3>(3 * c - 3));
-    const ContactStates::Trial trial{.axial = axial,
-                                     .slides = contact.sticks() ? 0.0 : ContactStates::way(contact, axial)};
-    if (states.contradiction(c, trial) <= kNoContradiction_N) continue;
-    errors_.set(c - 1, -slides(contact, c));
-    states.change(c, trial, step);
-  }
-  return errors_.are_any();
+/// The moved needle is at the start of the sub-step, to be balanced.
+void RestingHold::begin_balance() {
+  forces_.set_usual(reach_.begin(all_, grips()));
+  forces_.begin(grips());
 }
 
-RestingHold::Followed RestingHold::follow(bool last, Step& step) {
-  RestingMatrix& matrix = grips().matrix();
-  if (!drift_.fits(all_, matrix) && !last) return Followed::again;
-  const Eigen::Index own = grips().held().others();
-  auto change = start_.head(own);  // it is made anew before it is needed again
-  change.head<3>() = all_.tip.force - change.head<3>();
-  for (Eigen::Index at = 3; const ShaftContact& contact : std::as_const(all_.shaft).own()) {
-    change.segment<3>(at) = contact.force - change.segment<3>(at);
-    at += 3;
-  }
-  auto z = z_.head(matrix.rows());
-  z.setZero();
-  grips().held().subtract(change, z);
-  grips().sliding().yield_in(z, matrix);
-  auto force = force_.head(matrix.contact_rows());
-  matrix.forces(z, force);
-
-  if (change_states(step)) {
-    if (!soften()) return Followed::no;
-    for (const int grip : errors_.contacts()) errors_.add(grip, slides(all_.of_shaft(grip + 1), grip + 1));
-    z.setZero();
-    errors_.answer(matrix, grips().sliding(), z_);
-    add_solved();
-    return Followed::again;
-  }
+/// Looks at the laws of all contacts at rest. @param axial [N] (contacts at rest) forces along the needles
+void RestingHold::look_at_laws(const Eigen::Ref<const VecX>& axial) {
+  contradicted_.clear();
   for (int c = 1; c < all_.first_own(); ++c) {
-    ShaftContact& contact = all_.of_shaft(c);
-    contact.force += force.segment<3>(3 * c - 3);
-    contact.s = contact.s_start - slides(contact, c);
-    contact.slid = contact.s - contact.s_start;
-    contact.slid_more = 0.0;
-    contact.history = {};
+    const ShaftContact& contact = all_.of_shaft(c);
+    const double along = axial[c - 1];
+    const ContactStates::Trial trial{.axial = along,
+                                     .slides = contact.sticks() ? 0.0 : ContactStates::way(contact, along)};
+    if (whole_.states().contradiction(c, trial) > kNoContradiction_N) contradicted_.push_back({c, trial});
   }
+}
+
+RestingHold::Followed RestingHold::follow() {
+  look_at_laws(forces_.follow(own_forces(), grips()));
+  if (!contradicted_.empty()) return Followed::again;
+  const int count = grips().count();
+  const int end = std::min(count, turn_ + (count + kTurn - 1) / kTurn);
+  const auto is_visited = [&](int grip) { return (grip >= turn_ && grip < end) || !all_.of_shaft(grip + 1).sticks(); };
+  forces_.compute(turn_, end, grips());
+  for (int grip = 0; grip < count; ++grip) {
+    if (is_visited(grip) && (grip < turn_ || grip >= end)) forces_.compute(grip, grip + 1, grips());
+  }
+  const auto forces = forces_.computed(grips());
+  for (int grip = 0; grip < count; ++grip) {
+    if (!is_visited(grip)) continue;
+    ShaftContact& contact = all_.of_shaft(grip + 1);
+    take_force(grip, forces.segment<3>(3 * grip));
+    contact.s = contact.s_start - slides(contact, grip + 1, contact.force);
+    contact.slid = contact.s - contact.s_start;
+  }
+  all_.tissue.compliance().renew_tip(points_.of(turn_, end));
+  reach_.visit(all_, turn_, end, grips(), forces_.reference(grips().matrix()));
+  turn_ = end < count ? end : 0;
+  reach_.end(all_, all_.tissue.memory().kept());
+  creep_.end(all_.tissue.memory().kept());
   return Followed::done;
+}
+
+bool RestingHold::start_again(Step& step) {
+  write_all();
+  for (const Contradicted& one : contradicted_) {
+    const ShaftContact& contact = all_.of_shaft(one.contact);
+    errors_.set(one.contact - 1, -slides(contact, one.contact, contact.force));
+    whole_.states().change(one.contact, one.trial, step);
+  }
+  whole_.rows().soften(all_, h_);
+  const std::uint64_t before = grips().version();
+  if (!grips().follow()) return false;
+  if (grips().version() != before) ++version_;
+  for (const int grip : errors_.contacts()) {
+    const ShaftContact& contact = all_.of_shaft(grip + 1);
+    errors_.add(grip, slides(contact, grip + 1, contact.force));
+  }
+  const auto forces = errors_.answer(grips().matrix(), grips().sliding());
+  for (int c = 1; c < all_.first_own(); ++c) all_.force(c) += forces.segment<3>(3 * c - 3);
+  take_start(false);
+  begin_balance();
+  return true;
 }
 
 Mat3 RestingHold::reduction(int point, int other) const {
@@ -222,24 +285,12 @@ Mat3 RestingHold::reduction(int point, int other) const {
 
 Vec3 RestingHold::displacement(int point) const {
   const Eigen::Index at = own_.row(point);
-  const double cut = all_.tip.touches() ? all_.tip.cut.advance() : 0.0;
-  const Vec3 drifted = moved_.block<3, 1>(at, 1) + cut * moved_.block<3, 1>(at, 2);
-  if (point != ContactCompliance::kTip) return moved_.block<3, 1>(at, 0) - drifted;
-  // The tip is at another place than at the start of the sub-step.
-  const HeldTissue& held = grips().held();
-  Vec3 moved = held.reduction().topRows<3>().lazyProduct(start_.head(held.others()));
-  for (int c = 1; c < all_.first_own(); ++c)
-    moved.noalias() +=
-        all_.tissue.own_compliance_now(all_.point(c), ContactCompliance::kTip).transpose() * all_.force(c);
-  return moved - drifted;
-}
-
-Vec3 RestingHold::of_others() const {
-  const MatX& scale = all_.tissue.compliance().needle_scale();
-  Vec3 sum = Vec3::Zero();
-  for (const ShaftContact& contact : resting())
-    sum.noalias() += scale.middleRows<3>(3 * contact.point).transpose() * contact.force;
-  return sum;
+  Vec3 moved = forces_.motion(at) - reach_.felt(all_, at);
+  const bool is_tip = point == ContactCompliance::kTip;
+  if (is_tip) moved += reach_.at_tip(all_, own_forces(), forces_.own(grips().held()));
+  const TissueMemory& memory = all_.tissue.memory();
+  if (!memory.on()) return moved;
+  return moved + memory.most() * memory.kept() * (is_tip ? reach_.remembered(all_) : creep_.remembered(at));
 }
 
 // NOLINTNEXTLINE(performance-unnecessary-value-param): the result is written through its view

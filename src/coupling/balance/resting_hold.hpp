@@ -2,27 +2,29 @@
 #pragma once
 
 #include "coupling/balance/coupled_balance.hpp"
-#include "coupling/balance/fading_creep.hpp"
 #include "coupling/balance/own_points.hpp"
+#include "coupling/balance/resting_creep.hpp"
 #include "coupling/balance/resting_errors.hpp"
-#include "coupling/balance/tip_drift.hpp"
+#include "coupling/balance/resting_forces.hpp"
+#include "coupling/balance/resting_points.hpp"
+#include "coupling/balance/tip_reach.hpp"
 #include "coupling/tissue_hold.hpp"
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace stylet {
 
 /// Needles at rest that follow the needle that the hand moves, instead of being balanced with it. The moved needle is
-/// balanced alone, in a tissue that they hold: with the compliance A_oo − A_or S B⁻¹ Sᵀ A_ro (RestingGrips). Then the
-/// forces at rest follow by the same linear equations, and their laws are looked at. So a sub-step reads
-/// O(contacts of the moved needle × contacts at rest) numbers, and not the square of the latter.
+/// balanced alone, in a tissue that they hold: with the compliance A_oo − A_or S B⁻¹ Sᵀ A_ro (RestingGrips). The forces
+/// at rest follow by the same linear equations (RestingForces).
 ///
-/// Linear equations leave over what the needles' bending, the tip's way through the tissue and creep change at rest.
-/// Every few sub-steps all of it is looked at and solved for (CoupledBalance::settle_rest). In between
-/// - the tip's columns belong to the place of the last look; how much more it moves the contacts at rest at its present
-///   place, E, moves the moved needle by −A_or B⁻¹ E at once, while their own forces follow at the next look;
-/// - the lasting forces go on as under the forces of the last look, which gives one solved column, scaled with time.
+/// Contacts at rest are visited in turn, some in each sub-step: their forces are computed, their laws are looked at,
+/// and the tip's effect on them is (TipReach). Those that slide are visited in each sub-step. So a sub-step reads
+/// O(contacts of the moved needle × contacts visited) numbers. Linear equations leave over what the needles' bending,
+/// the tip's way through the tissue and creep change at rest. Every now and then all of it is looked at and solved for
+/// (CoupledBalance::settle_rest).
 ///
 /// Where a contact at rest begins or ends to slip, the moved needle is balanced again with it. Where that does not end,
 /// or where B does not fit any longer, all needles have to be balanced together. Nothing allocates after construction.
@@ -34,68 +36,85 @@ class RestingHold final : public TissueHold {
 
   /// All needles have been balanced together in a sub-step of h seconds: the needles at rest may follow from there.
   void balanced(double h, bool found);
-  /// The moved needle is at another place: all needles have to be balanced together.
-  void forget() { h_ = 0.0; }
-  /// Begins a sub-step of h seconds, with the base at its new place. @return false, with nothing changed, where all
-  /// needles have to be balanced together
+  /// Writes the present forces to all contacts at rest, before something else than this changes them.
+  void settle();
+  /// Writes the present forces to all contacts at rest for those who look at them between sub-steps. The next sub-step
+  /// does not depend on that.
+  void show();
+  /// Begins a sub-step of h seconds, with the base at its new place. @return false, with the contacts at rest settled,
+  /// where all needles have to be balanced together
   [[nodiscard]] bool begin(double h);
-  /// The moved needle is back at the start of the sub-step, to be balanced again.
-  void start_again() { take_start(); }
 
   enum class Followed { done, again, no };
   /// Lets the needles at rest follow after a balance of the moved needle.
-  /// @param last whether a tip that has gone another way than expected is accepted
-  /// @return `done`: this is the balance of the sub-step; `again`: contacts have changed their states, or the tip has
-  /// gone another way, and the moved needle has to be balanced again; `no`: all needles have to be balanced together
-  [[nodiscard]] Followed follow(bool last, Step& step);
-  /// Restores the contacts at rest of the start of the sub-step. All needles have to be balanced together.
+  /// @return `done`: this is the balance of the sub-step; `again`: contacts contradict their laws; `no`: all needles
+  /// have to be balanced together
+  [[nodiscard]] Followed follow();
+  /// The moved needle is back at the start of the sub-step: contacts that contradicted their laws change their states.
+  /// @return false where all needles have to be balanced together
+  [[nodiscard]] bool start_again(Step& step);
+  /// Restores the contacts at rest of the start of the sub-step, with the moved needle back there. All needles have to
+  /// be balanced together.
   void take_back();
 
   /// Points of the moved needle's shaft contacts.
   [[nodiscard]] std::span<const int> points() const { return own_.all(); }
+  /// Points without a contact at rest, but for the tip.
+  [[nodiscard]] std::span<const int> free_points() const { return points_.free(); }
 
   [[nodiscard]] Mat3 reduction(int point, int other) const override;
   [[nodiscard]] Vec3 displacement(int point) const override;
-  [[nodiscard]] Vec3 of_others() const override;
+  [[nodiscard]] Vec3 of_others() const override { return reach_.of_others(all_); }
   void write_forces(Eigen::Ref<MatX> forces) const override;
   [[nodiscard]] std::uint64_t version() const override { return version_; }
 
  private:
-  /// A contact at rest at the start of a sub-step.
+  /// A contact at rest at the start of a sub-step, and its force before show().
   struct Kept {
     Vec3 force = Vec3::Zero();
     double s = 0.0;
     ShaftContact::State state = ShaftContact::State::stick;
     bool fast = false;
+    int since = 0;  ///< sub-steps since its force was computed
+  };
+  /// A contact whose law is contradicted.
+  struct Contradicted {
+    int contact = 0;
+    ContactStates::Trial trial;
   };
 
+  void write_all();
+  void hide();
   void keep();
   [[nodiscard]] bool look(double h);
   void go_on();
   void take_contacts();
-  void take_start();
-  [[nodiscard]] bool soften();
-  [[nodiscard]] bool change_states(Step& step);
-  void add_solved();
-  [[nodiscard]] double slides(const ShaftContact& contact, int c) const;
+  void take_start(bool columns);
+  void take_force(int grip, const Vec3& force);
+  void look_at_laws(const Eigen::Ref<const VecX>& axial);
+  void begin_balance();
+  [[nodiscard]] Eigen::Ref<const VecX> own_forces() const {
+    return own_.forces(all_.tip.force, std::as_const(all_.shaft).own(), grips().held().known());
+  }
+  [[nodiscard]] double slides(const ShaftContact& contact, int c, const Vec3& force) const;
   [[nodiscard]] RestingGrips& grips() const { return whole_.system().resting(); }
   [[nodiscard]] std::span<ShaftContact> resting() const { return all_.shaft.all().first(all_.shaft.others()); }
 
   Contacts all_;
   CoupledBalance& whole_;
-  double h_ = 0.0;  ///< [s] of the last balance of all needles, 0: none
-  int age_ = 0;     ///< sub-steps since the last look
+  double h_ = 0.0;      ///< [s] of the last balance of all needles, 0: none
+  int age_ = 0;         ///< sub-steps since the last look
+  bool shown_ = false;  ///< show() was called since the last sub-step
+  int turn_ = 0;        ///< the contact at rest, from 0 on, that is visited next
   std::uint64_t version_ = 0;
-  std::vector<Kept> kept_;  ///< (contacts at rest)
+  std::vector<Kept> kept_;                  ///< (contacts at rest)
+  std::vector<Contradicted> contradicted_;  ///< in the last balance
+  RestingPoints points_;
   OwnPoints own_;
-  VecX start_;  ///< [N] (3 own) forces on the moved needle's contacts at the start of the sub-step
-  MatX moved_;  ///< [mm] (3 own × 3) displacement without E, what E takes off it, and its change per mm of cut
-  TipDrift drift_;
-  FadingCreep creep_;
-  MatX solved_;  ///< [N] (rows × 2) B⁻¹ of the usual E, and of what the creep moves
+  TipReach reach_;
+  RestingCreep creep_;
+  RestingForces forces_;
   RestingErrors errors_;
-  VecX z_;      ///< (rows) work space: a solved column
-  VecX force_;  ///< [N] (3 contacts at rest) work space
 };
 
 }  // namespace stylet

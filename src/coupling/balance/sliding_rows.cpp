@@ -35,6 +35,25 @@ double SlidingRows::more(int grip) const {
   return 0.0;
 }
 
+/// Whether the j-th sliding contact is this one, with the same yield.
+bool SlidingRows::is_as(std::size_t j, int grip, double more) const {
+  return j < sliding_.size() && sliding_[j].grip == grip &&
+         std::abs(sliding_[j].more - more) <= kSameAlong * std::abs(more);
+}
+
+bool SlidingRows::differs(std::span<const Yield> yields, const RestingMatrix& matrix) const {
+  std::size_t same = 0;
+  for (int g = 0; g < matrix.count(); ++g) {
+    const Yield& now = yields[static_cast<std::size_t>(g)];
+    if (matrix.is_too_different(g, now)) return true;
+    const double more = now.axial - matrix.yield(g).axial;
+    if (std::abs(more) <= kSameAlong * matrix.compliance(g)) continue;
+    if (!is_as(same, g, more)) return true;
+    ++same;
+  }
+  return same != sliding_.size();
+}
+
 SlidingRows::Change SlidingRows::follow(std::span<const Yield> yields, RestingMatrix& matrix) {
   std::size_t same = 0;  // sliding contacts from the first on that are as they were
   bool differs = false;
@@ -43,8 +62,7 @@ SlidingRows::Change SlidingRows::follow(std::span<const Yield> yields, RestingMa
     if (matrix.is_too_different(g, now)) return Change::needs_new_matrix;
     const double more = now.axial - matrix.yield(g).axial;
     if (std::abs(more) <= kSameAlong * matrix.compliance(g)) continue;
-    differs = differs || same == sliding_.size() || sliding_[same].grip != g ||
-              std::abs(sliding_[same].more - more) > kSameAlong * std::abs(more);
+    differs = differs || !is_as(same, g, more);
     if (differs) {
       sliding_.resize(same);
       sliding_.push_back({g, more});

@@ -23,8 +23,15 @@ class SlidingRows {
   /// Follows the present D of all contacts.
   [[nodiscard]] Change follow(std::span<const Yield> yields, RestingMatrix& matrix);
 
+  /// Whether follow() would change something.
+  [[nodiscard]] bool differs(std::span<const Yield> yields, const RestingMatrix& matrix) const;
+
   /// Number of sliding contacts.
   [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(sliding_.size()); }
+  /// Number of a sliding contact among those at rest, from 0 on.
+  [[nodiscard]] int grip(Eigen::Index j) const { return sliding_[static_cast<std::size_t>(j)].grip; }
+  /// eᵀ z of a contact whose column is known.
+  [[nodiscard]] double along(const Eigen::Ref<const VecX>& z, int grip, const RestingMatrix& matrix) const;
   /// [mm/N] Yield of a contact along its needle beyond that in B.
   [[nodiscard]] double more(int grip) const;
 
@@ -42,6 +49,14 @@ class SlidingRows {
   void answer(const Eigen::Ref<const MatX>& Y, const RestingMatrix& matrix, Eigen::Ref<MatX> of) const {
     for (Eigen::Index j = 0; j < count(); ++j)
       of.row(j) = column(sliding_[static_cast<std::size_t>(j)].grip, matrix).transpose().lazyProduct(Y);
+  }
+  /// Adds Zᵀ Y for Y whose rows are zero but for those from `from` on. @param of (count × k, or larger)
+  void add_answers(Eigen::Index from, const Eigen::Ref<const MatX>& Y, const RestingMatrix& matrix,
+                   Eigen::Ref<MatX> of) const {
+    for (Eigen::Index j = 0; j < count(); ++j) {
+      const auto part = column(grip(j), matrix).segment(from, Y.rows());
+      of.row(j).head(Y.cols()) += part.transpose().lazyProduct(Y);
+    }
   }
   /// Eᵀ Z̃ for solved columns. @param columns (rows × k) @param of (count × k) written
   void take(const Eigen::Ref<const MatX>& columns, const RestingMatrix& matrix, Eigen::Ref<MatX> of) const;
@@ -66,7 +81,7 @@ class SlidingRows {
   };
 
   void solve_column(int grip, RestingMatrix& matrix);
-  [[nodiscard]] double along(const Eigen::Ref<const VecX>& z, int grip, const RestingMatrix& matrix) const;
+  [[nodiscard]] bool is_as(std::size_t j, int grip, double more) const;
 
   std::vector<Sliding> sliding_;
   std::vector<Column> known_;  ///< (grips)

@@ -40,6 +40,7 @@ NearFieldCompliance::NearFieldCompliance(std::unique_ptr<ContactCompliance> far,
       needle_(needle),
       region_stiffening_MPa_(std::move(stiffening_MPa)),
       capacity_(capacity + 1) {
+  tip_neighbours_.reserve(capacity + 1);
   places_.reserve(static_cast<std::size_t>(capacity) + 1);
   softness_.reserve(places_.capacity());
   const std::size_t entries = tip_node_entry(kMostElementNodes, 0, 0);
@@ -65,6 +66,7 @@ void NearFieldCompliance::reset() {
   ground_.way = -1;
   tip_tet_ = -1;
   tip_element_.reset();
+  tip_neighbours_.reset();
   A_.setZero();
   needle_scale_.setZero();
   wide_.setZero();
@@ -163,8 +165,20 @@ void NearFieldCompliance::write_wide_of_tip() {
     own += (1.0 - share) * (far + softness_.front() * tip_wide_correction(*ground_.kernel, tip, tip.mesh_kernel));
   if (share > 0.0) own += share * spread_between(kTip, kTip);
   write_symmetric(wide_, kTip, kTip, own);
-  for (int d = 1; d < points_; ++d) write_wide_block(kTip, d, [&](int medium) { return of_mesh_at_tip(d, medium); });
+  tip_neighbours_.for_each(
+      points_, [&](int d) { write_wide_block(kTip, d, [&](int medium) { return of_mesh_at_tip(d, medium); }); });
   wide_at_ = tip.piece.centre;
+}
+
+/// Writes what belongs to a point and the tip at its present place.
+void NearFieldCompliance::write_tip(int point) {
+  if (tip_tet_ < 0) return;
+  const auto g = [&](int medium) { return of_mesh_at_tip(point, medium); };
+  write_block(kTip, point, g);
+  if (!knows_wide()) return;
+  write_wide_block(kTip, point, g);
+  if (stiffens())
+    needle_scale_.middleRows<3>(3 * point) = A_.block<3, 3>(3 * point, 0) - wide_.block<3, 3>(3 * point, 0);
 }
 
 ContactCompliance::Added NearFieldCompliance::add(const MaterialPoint& at, const Vec3& x, Placement /*placement*/,
@@ -218,7 +232,8 @@ bool NearFieldCompliance::move_tip(const MaterialPoint& at, const Vec3& x) {
   if (share < 1.0) own += (1.0 - share) * ((*far_)(kTip, kTip) + tip_correction(*ground_.kernel, tip, tip.mesh_kernel));
   if (share > 0.0) own += share * (spread_between(kTip, kTip) + tip_narrow_part(*ground_.kernel, tip));
   write_symmetric(A_, kTip, kTip, own);
-  for (int d = 1; d < points_; ++d) write_block(kTip, d, [&](int medium) { return of_mesh_at_tip(d, medium); });
+  tip_neighbours_.for_each(points_,
+                           [&](int d) { write_block(kTip, d, [&](int medium) { return of_mesh_at_tip(d, medium); }); });
   if (knows_wide() && (!wide_at_ || (x - *wide_at_).squaredNorm() > kWideReach_mm * kWideReach_mm)) write_wide_of_tip();
   stiffening_MPa_ = 0.0;
   if (!region_stiffening_MPa_.empty())

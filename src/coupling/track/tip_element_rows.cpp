@@ -31,4 +31,13 @@ TipElementRows::Blocks TipElementRows::combine(const TipElement::Weights& weight
   return {combined_.data(), 3, 3 * static_cast<Eigen::Index>(points)};
 }
 
+Mat3 TipElementRows::combine_one(const TipElement::Weights& weights, int point) const {
+  Mat3 sum = Mat3::Zero();
+  for (int i = 0; i < element_.count(); ++i) {
+    const int number = element_.number(i);
+    sum += weights[static_cast<std::size_t>(number)] * row(number, point);
+  }
+  return sum;
+}
+
 }  // namespace stylet

@@ -39,6 +39,9 @@ class TipElementRows {
   /// Σ (weight of a node) × (its row): the compliances with the points 1 … points. Valid until the next call.
   [[nodiscard]] Blocks combine(const TipElement::Weights& weights, int points);
 
+  /// The same for one point.
+  [[nodiscard]] Mat3 combine_one(const TipElement::Weights& weights, int point) const;
+
  private:
   [[nodiscard]] std::size_t position(int number, int point) const {
     return static_cast<std::size_t>(number * (capacity_ + 1) + point);

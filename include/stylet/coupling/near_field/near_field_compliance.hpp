@@ -40,6 +40,18 @@ class NearFieldCompliance final : public ContactCompliance {
   /// @param travel direction of the contact's piece of needle; zero: a point
   Added add(const MaterialPoint& at, const Vec3& x, Placement placement, const Vec3& travel = Vec3::Zero()) override;
   bool move_tip(const MaterialPoint& at, const Vec3& x) override;
+  void restrict_tip(std::span<const int> points) override {
+    far_->restrict_tip(points);
+    tip_neighbours_.restrict(points, [&](int point) { write_tip(point); });
+  }
+  void renew_tip(std::span<const int> points) override {
+    far_->renew_tip(points);
+    for (const int point : points) write_tip(point);
+  }
+  void release_tip() override {
+    far_->release_tip();
+    tip_neighbours_.release(points_, [&](int point) { write_tip(point); });
+  }
   void begin_sub_step() override { wide_at_.reset(); }
   void enter_by(double force, const Vec3& direction) override {
     press_N_ = force;
@@ -85,6 +97,7 @@ class NearFieldCompliance final : public ContactCompliance {
   /// F between two points that are near a path.
   [[nodiscard]] Mat3 spread_between(int point, int other) const;
   void write_wide_of_tip();
+  void write_tip(int point);
   [[nodiscard]] std::size_t tip_node_entry(int number, int point, int medium) const {
     return static_cast<std::size_t>((number * capacity_ + point) * ground_.kernel->media() + medium);
   }
