@@ -22,7 +22,7 @@ void GuideMeeting::place(const Vec3& centre, const Vec3& axis) {
   placed_ = true;
   centre_ = centre;
   axis_ = axis;
-  found_ = false;
+  found_ = has_held_ = false;
 }
 
 /// Finds the arc length at which the shaft is nearest to the centre, starting where it was before.
@@ -53,7 +53,10 @@ void GuideMeeting::meet(const Needle& needle) {
   offset_.setZero();
   load_.force.setZero();
   stiffness_.setZero();
-  if (!placed_ || !find_nearest(needle)) return;
+  if (!placed_ || !find_nearest(needle)) {
+    has_held_ = false;
+    return;
+  }
   const auto [point, t] = needle.place(load_.s);
   offset_ = point - centre_;
   offset_ -= t * t.dot(offset_);
@@ -73,6 +76,7 @@ void GuideMeeting::meet(const Needle& needle) {
     energy_ = k * in * in * in / (12.0 * rounded);
   }
   if (!holds()) return;
+  has_held_ = true;
   const Vec3 e = d > 0.0 ? Vec3(offset_ / d) : Vec3(Vec3::Zero());
   const double across = d > 0.0 ? push_ / d : k;
   load_.force = -push_ * e;

@@ -7,14 +7,8 @@
 
 namespace stylet {
 
-namespace {
-/// The hole's stiffness turns as the shaft moves along its edge. A tangent made for an older stiffness is still used
-/// while the relative difference is at most this. A larger value takes more iterations at the edge of a hole.
-constexpr double kTurned = 0.02;
-}  // namespace
-
 GuidedNeedle::GuidedNeedle(std::unique_ptr<Needle> inner, const GuideHole& hole, int load_capacity)
-    : inner_(std::move(inner)), hole_(hole) {
+    : inner_(std::move(inner)), hole_(hole), change_(3 * (static_cast<Eigen::Index>(load_capacity) + 1)) {
   const auto loads = static_cast<std::size_t>(load_capacity) + 1;
   loads_.reserve(loads);
   springs_.reserve(loads);
@@ -53,6 +47,7 @@ bool GuidedNeedle::linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> 
   const bool definite = inner_->linearise(with_guide(loads, held_.with), N_.topLeftCorner(size + 3, size + 3),
                                           free_.head(size + 3), with_guide(springs, loads.size()), otherwise);
   if (!definite && otherwise == Indefinite::give_up) return false;
+  change_.take(N_.topLeftCorner(size + 3, 3));
   compliance = N_.block(3, 3, size, size);
   free = free_.segment(3, size);
   return definite;
@@ -75,11 +70,12 @@ bool GuidedNeedle::prepared_compliance(Eigen::Ref<MatX> compliance) {
 void GuidedNeedle::take_prepared() {
   inner_->take_prepared();
   held_ = prepared_;
+  if (held_.on) change_.take(prepared_N_.leftCols<3>());
 }
 
 bool GuidedNeedle::fits() const {
-  if (held_.on != hole_.holds()) return false;
-  return !held_.on || (hole_.stiffness() - held_.stiffness).norm() <= kTurned * held_.stiffness.norm();
+  if (held_.on != hole_.has_held()) return false;
+  return !held_.on || change_.is_small(hole_.stiffness() - held_.stiffness);
 }
 
 bool GuidedNeedle::append(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance) {
@@ -88,6 +84,7 @@ bool GuidedNeedle::append(std::span<const PointLoad> loads, Eigen::Ref<MatX> com
   const auto size = 3 * static_cast<Eigen::Index>(loads.size());
   auto rows = N_.topLeftCorner(3, size + 3);
   if (!inner_->append(with_guide(loads, guide_load()), rows)) return false;
+  change_.append(static_cast<Eigen::Index>(loads.size()), rows.leftCols<3>());
   compliance = rows.rightCols(size);
   return true;
 }
@@ -98,12 +95,18 @@ bool GuidedNeedle::relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free
   const auto size = 3 * static_cast<Eigen::Index>(loads.size());
   if (!inner_->relax(with_guide(loads, guide_load()), free_.head(size + 3))) return false;
   held_.with = guide_load();
+  change_.begin(hole_.stiffness() - held_.stiffness, loads, free_.head<3>());
   free = free_.segment(3, size);
+  free.noalias() += change_.by_hole(loads.size()) * change_.force();
   return true;
 }
 
 void GuidedNeedle::advance(std::span<const PointLoad> loads) {
-  inner_->advance(held_.on ? with_guide(loads, held_.with) : loads);
+  if (held_.on) {
+    inner_->advance(with_guide(loads, {held_.with.s, held_.with.force + change_.force(loads)}));
+  } else {
+    inner_->advance(loads);
+  }
   hole_.meet(*inner_);
 }
 

@@ -161,6 +161,41 @@ TEST_P(NeedleInAGuide, is_part_of_a_tangent_that_is_prepared) {
   EXPECT_LT((free - expected_free).norm(), 1e-11 * expected.norm());
 }
 
+TEST_P(NeedleInAGuide, with_a_tangent_for_another_stiffness_of_its_hole_it_moves_as_with_a_new_one) {
+  // The shaft presses on the rounded edge, whose stiffness changes with the force. The hole is moved between tangent
+  // and step, so that the shaft presses less, more, not at all, and in another direction.
+  std::vector<PointLoad> loads{{kLength, {0.002, 0.004, 0}}, {120.0, {0.001, 0.002, 0}}};
+  for (const Vec3& aside : {Vec3(0, 0.002, 0), Vec3(0, -0.001, 0), Vec3(0.01, 0.0, 0)}) {
+    const auto needle = guided({0.05, 100.0}, 70.0);
+    const auto other = guided({0.05, 100.0}, 70.0);
+    MatX compliance(6, 6);
+    VecX free(6);
+    for (GuidedNeedle* n : {needle.get(), other.get()}) {
+      settle(*n, loads);
+      ASSERT_GT(n->guide_load().force.norm(), 1e-3);
+      ASSERT_LT(n->guide_load().force.norm(), 1.0);
+      n->linearise(loads, compliance, free);
+    }
+    needle->set_base({aside, Eigen::Quaterniond::Identity()});
+    other->set_base({aside, Eigen::Quaterniond::Identity()});
+    const MatX old = compliance;
+    VecX expected(6);
+    ASSERT_TRUE(needle->relax(loads, free));
+    other->linearise(loads, compliance, expected);
+    EXPECT_LT((free - expected).norm(), 1e-2 * expected.norm());
+    EXPECT_GT((compliance - old).norm(), 1e-2 * old.norm()) << "the hole is as stiff as before";
+    auto more = loads;
+    more.front().force += Vec3(-0.001, 0.002, 0.0);
+    const VecX before = needle->state();
+    needle->advance(more);
+    other->advance(more);
+    // The force of the hole has changed as well, and with it a small part of the Hessian.
+    EXPECT_LT((needle->state() - other->state()).norm(), 1e-2 * (other->state() - before).norm());
+    needle->set_base({Vec3(0, -0.05, 0), Eigen::Quaterniond::Identity()});
+    EXPECT_FALSE(needle->relax(loads, free)) << "where nothing holds the shaft any more it needs a new tangent";
+  }
+}
+
 TEST_P(NeedleInAGuide, holds_the_shaft_against_buckling) {
   // A shaft that is clamped and propped half way bears more than a free one: Euler's load of the free half alone is
   // four times as high, and the two halves turn each other.

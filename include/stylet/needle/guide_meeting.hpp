@@ -26,6 +26,9 @@ class GuideMeeting {
 
   /// Whether the hole exerts a force: the shaft touches its edge, or is in it where there is no clearance.
   [[nodiscard]] bool holds() const { return found_ && (push_ > 0.0 || hole_.clearance_mm == 0.0); }
+  /// Whether it has exerted one since the shaft has been in it. From then on its load is one of the tangent's, so that
+  /// no new tangent is needed whenever the shaft touches the edge.
+  [[nodiscard]] bool has_held() const { return has_held_; }
   /// Force of the hole on the needle and the arc length where it acts.
   [[nodiscard]] const PointLoad& load() const { return load_; }
   /// [N/mm] Tangent stiffness: minus the derivative of load() with respect to the position of the shaft. The effect of
@@ -44,6 +47,7 @@ class GuideMeeting {
   Vec3 centre_ = Vec3::Zero();  ///< [mm] LPS
   Vec3 axis_ = Vec3::UnitZ();   ///< unit, LPS
   bool found_ = false;          ///< whether the shaft is in the hole
+  bool has_held_ = false;       ///< whether it has held the shaft since
   double push_ = 0.0;           ///< [N] force of the edge on the shaft
   double energy_ = 0.0;         ///< [N mm]
   Vec3 offset_ = Vec3::Zero();  ///< [mm] vector from the hole's centre to the shaft, perpendicular to it

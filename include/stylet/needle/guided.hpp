@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "stylet/needle/guide_change.hpp"
 #include "stylet/needle/guide_meeting.hpp"
 
 #include <memory>
@@ -13,7 +14,8 @@ namespace stylet {
 /// the edge between the two is rounded (docs/theory/needle.md). The force is perpendicular to the shaft: the hole is
 /// smooth, and the shaft slides through it without friction. The force is an additional load of the inner needle with a
 /// spring, so to the coupling the needle is just stiffer. The tangent stiffness neglects that the force turns with the
-/// shaft. There is no force before the tip reaches the hole or after the base has passed it.
+/// shaft. There is no force before the tip reaches the hole or after the base has passed it. A tangent that was made
+/// for another stiffness of the hole serves on (GuideChange).
 class GuidedNeedle final : public Needle {
  public:
   /// @param inner a needle built for at least load_capacity + 1 loads
@@ -51,15 +53,15 @@ class GuidedNeedle final : public Needle {
  private:
   /// State of the hole for which a tangent was made.
   struct Hold {
-    bool on = false;
+    bool on = false;  ///< whether the hole's load and stiffness, which may be zero, are in the tangent
     PointLoad with;
     Mat3 stiffness = Mat3::Zero();  ///< [N/mm]
   };
 
-  /// Whether the tangent in use was made for the current state of the hole.
+  /// Whether the tangent in use serves with the current state of the hole.
   [[nodiscard]] bool fits() const;
   std::span<const PointLoad> with_guide(std::span<const PointLoad> loads, const PointLoad& guide);
-  [[nodiscard]] Hold hold() const { return {hole_.holds(), hole_.load(), hole_.stiffness()}; }
+  [[nodiscard]] Hold hold() const { return {hole_.has_held(), hole_.load(), hole_.stiffness()}; }
   std::span<const Mat3> with_guide(std::span<const Mat3> springs, std::size_t loads);
 
   std::unique_ptr<Needle> inner_;
@@ -71,6 +73,7 @@ class GuidedNeedle final : public Needle {
   MatX N_;                        ///< [mm/N] (3w + 3 square) compliance of the inner needle with the hole's load
   VecX free_;                     ///< [mm] (3w + 3) `free` of the inner needle
   MatX prepared_N_;               ///< as N_, for the prepared tangent
+  GuideChange change_;            ///< of the hole since the tangent in use was made
 };
 
 }  // namespace stylet
