@@ -18,16 +18,14 @@ constexpr int kMaxPivots = 60;
 /// kAllAtOnce: rounds in which all contradictions are resolved together; after them only the worst one is. Raised,
 /// states may alternate for longer.
 constexpr int kAllAtOnce = 4;
-/// kManyIterations: refactorise before the next step if a balance took more iterations than this, and kSlow or kSlowish
-/// agree. Raised, matrices are kept longer.
+/// kManyIterations: refactorise before the next step if a balance took more iterations than this, and kSlow agrees.
+/// Raised, matrices are kept longer.
 constexpr int kManyIterations = 5;
-/// kManyQuiet: the same limit for a balance in which no contact changed its state.
-constexpr int kManyQuiet = 3;
+/// kManySnapping: the same limit for a needle that snaps.
+constexpr int kManySnapping = 3;
 /// kSlow: refactorise only if the last iteration left more than this part of the error, because then the matrix is to
 /// blame. Raised, matrices are kept longer.
 constexpr double kSlow = 0.08;
-/// kSlowish: replaces kSlow where no state changed and more than kManyIterations were taken.
-constexpr double kSlowish = 0.02;
 /// kWorn: begin the next tangent if the last iteration left more than this part of the error. Raised, it is begun
 /// later.
 constexpr double kWorn = 0.01;
@@ -38,7 +36,9 @@ constexpr int kMostSettling = 5;
 constexpr double kSettled = 3e-2;
 /// kTimeLeft: a balance of at most this many iterations leaves time for a piece of the next tangent; for a tip that
 /// cuts, one iteration less. Raised, the longest steps take longer.
-constexpr int kTimeLeft = 2;
+constexpr int kTimeLeft = 4;
+/// kTimeLeftSnapping: the same for a needle that snaps.
+constexpr int kTimeLeftSnapping = 2;
 /// kWorthATangent: keep the present tangent if this many more iterations would converge at the present rate; a new
 /// tangent costs as much as some iterations. Raised, tangents are kept longer and more iterations are taken.
 constexpr int kWorthATangent = 6;
@@ -49,6 +49,9 @@ constexpr double kNear = 1e-4;
 /// kFalls: where states have changed, keep a tangent that was made in this balance while each iteration leaves less
 /// than this part of the error. Raised, fewer tangents are made in one balance.
 constexpr double kFalls = 0.3;
+/// kStatesMove: where states have just changed, the error of the first iteration may grow by this factor, because an
+/// error of the states is not one of the tangent. Raised, fewer tangents are made at turns of the base.
+constexpr double kStatesMove = 10.0;
 /// kNeedleShare: tolerance of the needle's out-of-balance moment, over the largest force × the needle's length, as a
 /// part of the tolerance. Raised, the needle's shape is less exact.
 constexpr double kNeedleShare = 0.1;
@@ -78,9 +81,12 @@ constexpr double kShortCut_mm = 0.05;
 /// The state of a solve between its iterations.
 struct CoupledBalance::Progress {
   double before = std::numeric_limits<double>::infinity();  ///< error over the tolerance, in the previous iteration
-  bool changed = true;                                      ///< a state changed in the last iteration
-  bool quiet = true;                                        ///< no state has changed in this balance
-  bool old_matrix = false;                                  ///< the last iteration used a tangent of an earlier shape
+  /// The same in the iteration before that; infinite where a state has changed since.
+  double earlier = std::numeric_limits<double>::infinity();
+  /// The needle is damped, on bone or in a part of a sub-step, and may be far from its balance.
+  bool snaps = false;
+  bool changed = true;             ///< a state changed in the last iteration
+  bool old_matrix = false;         ///< the last iteration used a tangent of an earlier shape
   bool old_matrix_failed = false;  ///< the last iteration used an old matrix and found no solution
   bool new_tangent = false;        ///< a tangent was made in this balance
   bool steady = true;              ///< result of solve()
@@ -89,10 +95,14 @@ struct CoupledBalance::Progress {
   /// far
   [[nodiscard]] bool needs_tangent(double error, int iteration) const {
     if (error < 1.0) return false;
-    const double rate = error / before;
+    // Contacts and needle take turns in being wrong, so that an iteration may leave nearly all of a small error of
+    // which the next one leaves nothing. The mean over two iterations tells how fast they converge. A needle that snaps
+    // has no iteration to lose.
+    const double rate = iteration > 1 && !changed && !snaps ? std::sqrt(error / earlier) : error / before;
     const auto done_after = [&](int more) { return rate < 1.0 && error * std::pow(rate, more) < 1.0; };
     if (!changed) return iteration == 1 ? !(rate < 1.0) : !done_after(kWorthATangent);
-    return new_tangent ? !(rate < kFalls || done_after(kWorthATangent)) : iteration > 1 || !(rate < 1.0);
+    return new_tangent ? !(rate < kFalls || done_after(kWorthATangent))
+                       : iteration > 1 || !(rate < (snaps ? 1.0 : kStatesMove));
   }
 };
 
@@ -341,10 +351,11 @@ double CoupledBalance::shorten(double h, double error, double before) {
 /// A balance is found: judges the tangent by its last iteration, and goes on with the next tangent if there is time.
 void CoupledBalance::watch_tangent(const Progress& progress, int iteration) {
   const double before = progress.before;
-  const bool slow = error_of_rest_ > (progress.quiet && iteration > kManyIterations ? kSlowish : kSlow) * before;
-  if (slow && iteration > (progress.quiet ? kManyQuiet : kManyIterations)) tangent_.outdate();
+  const int many = progress.snaps ? kManySnapping : kManyIterations;
+  if (iteration > many && error_of_rest_ > kSlow * before) tangent_.outdate();
   if (iteration > 1 && error_of_rest_ > kWorn * before) tangent_.wear_out();
-  if (iteration <= (parts_.contacts.tip.cuts() ? kTimeLeft - 1 : kTimeLeft)) tangent_.prepare(parts_.contacts);
+  const int most = progress.snaps ? kTimeLeftSnapping : kTimeLeft;
+  if (iteration <= (parts_.contacts.tip.cuts() ? most - 1 : most)) tangent_.prepare(parts_.contacts);
 }
 
 bool CoupledBalance::settle_rest(double h) {
@@ -378,6 +389,7 @@ bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
   predictor.go_on(parts_.contacts.needle, tip, parts_.contacts.grips());
 
   Progress progress;
+  progress.snaps = tangent_.is_damped();
   Index border_tet = -1;  // element of the tip when it was last added to the matrix
   int before_break = 0;   // iterations up to the balance in which a surface broke
   for (int all = 0; all < kMaxNewton; ++all) {
@@ -413,6 +425,7 @@ bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
     system_.solve_all_at_rest(iteration > 1 && !(error < kFalls * progress.before));
     if (all > 0 && !effort.allows(effort.iteration() + (exact ? effort.tangent() : 0.0))) break;
     effort.spend(effort.iteration());
+    progress.earlier = iteration == 0 || progress.changed ? std::numeric_limits<double>::infinity() : progress.before;
     progress.before = iteration == 0 ? std::max(error, kNear / parts_.settings.tolerance) : error;
     ++step.iterations;
     progress.old_matrix = !exact && tangent_.relax();
@@ -444,7 +457,6 @@ bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
       continue;
     }
     if (effort.ended()) break;  // the states do not belong to the solution
-    progress.quiet = progress.quiet && !progress.changed;
     progress.steady = progress.steady && tip.toggles == 0;
 
     take_solution();

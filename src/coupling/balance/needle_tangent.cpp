@@ -16,8 +16,11 @@ constexpr int kFewSprings = 6;
 /// [mm/N] Least compliance of the tissue in a spring's stiffness. Lowered, springs on bone make the matrix
 /// ill-conditioned.
 constexpr double kHardest_mm_per_N = 1e-3;
-/// [mm] Motion of the base after which the next tangent is begun. Raised, tangents are older and iterations more.
-constexpr double kWornOut_mm = 2.0;
+/// [mm] Motion of the base after which the next tangent is begun. Raised, tangents are older and iterations more, and
+/// more tangents have to be made at once.
+constexpr double kWornOut_mm = 1.0;
+/// [mm] The same for a damped needle, which is on bone or snaps.
+constexpr double kWornOutDamped_mm = 2.0;
 /// Change of the damping ratio, over 1 + the ratio, that needs another tangent. Raised, a damped needle takes more
 /// iterations.
 constexpr double kOtherDamping = 0.25;
@@ -163,7 +166,7 @@ void NeedleTangent::lend_springs_at_rest(const Contacts& contacts, NeedleSide& s
 void NeedleTangent::prepare(const Contacts& contacts) {
   if (!needle_.prepares() || !fits_ || !system_.fits()) return;
   if (stage_ == Stage::none) {
-    if (worn_mm_ < kWornOut_mm) return;
+    if (worn_mm_ < (is_damped() ? kWornOutDamped_mm : kWornOut_mm)) return;
     lent_ = expects_springs() ? kFewSprings : 0;
     if (lent_ == 0) on_springs_for_ = 0;
     stage_ = Stage::begun;

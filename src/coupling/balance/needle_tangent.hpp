@@ -46,6 +46,7 @@ class NeedleTangent {
 
   /// Sets the needle's damping in this sub-step (Needle::damp()).
   void damp(double ratio);
+  [[nodiscard]] bool is_damped() const { return damping_ != 0.0; }
   /// Adds a motion of the base [mm], after which the tangent fits less well.
   void wear(double way_mm) { worn_mm_ += way_mm; }
   /// Has the next tangent begun, because an iteration with the present one left too much of the error.
