@@ -14,7 +14,7 @@ Vec3 GuideChange::force(std::span<const PointLoad> loads) const {
   Vec3 motion = motion_;
   for (std::size_t c = 0; c < loads.size(); ++c) {
     const auto at = 3 * static_cast<Eigen::Index>(c);
-    motion += by_hole_.middleRows<3>(3 + at).transpose() * (loads[c].force - before_.segment<3>(at));
+    motion.noalias() += by_hole_.block<3, 3>(3 + at, 0).transpose() * (loads[c].force - before_.segment<3>(at));
   }
   return -stiffer_ * motion;
 }

@@ -97,7 +97,7 @@ bool GuidedNeedle::relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free
   held_.with = guide_load();
   change_.begin(hole_.stiffness() - held_.stiffness, loads, free_.head<3>());
   free = free_.segment(3, size);
-  free.noalias() += change_.by_hole(loads.size()) * change_.force();
+  free.noalias() += change_.by_hole(loads.size()).lazyProduct(change_.force());
   return true;
 }
 

@@ -40,7 +40,7 @@ class GuideChange {
  private:
   /// (I + N_hh G)⁻¹: motion of the hole with the change over that without.
   [[nodiscard]] Mat3 softening(const Mat3& change) const {
-    return (Mat3::Identity() + by_hole_.topRows<3>() * change).inverse();
+    return (Mat3::Identity() + by_hole_.topLeftCorner<3, 3>() * change).inverse();
   }
 
   /// Norm of (I + N_hh G)⁻¹, √3 without a change, up to which the tangent serves; it grows where the hole becomes
