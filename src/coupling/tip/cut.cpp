@@ -21,7 +21,7 @@ void Cut::put(const Vec3& x, const MaterialPoint& at) {
 void Cut::forget() {
   x_.setZero();
   at_ = {};
-  direction_ = Vec3::UnitZ();
+  aim({});
   blocked_ = false;
   stale_ = false;
   count_from_here();
