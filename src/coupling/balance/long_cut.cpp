@@ -10,6 +10,8 @@ namespace {
 /// so that only cuts faster than the base are. Raised, tracks depend more on the time step; lowered, more balances are
 /// sought twice.
 constexpr double kLong_mm = 0.25;
+/// [mm] A cut whose end would move by less is left as it was aimed. Raised, tracks depend more on the time step.
+constexpr double kApart_mm = 0.05;
 
 /// Exchanges the present forces and those at the start of the sub-step.
 void swap_forces(const Contacts& contacts) {
@@ -43,7 +45,12 @@ bool aim_long_cut(const Contacts& contacts) {
   const Cut::Aim last = tip.aim_here(contacts.forces());
   tip.cut.march(0.5 * length);
   const Vec3 middle = tip.undeformed(0.5 * (first.along + last.along), gradient_by_mean(contacts));
-  tip.cut.turn((first.direction + 4.0 * middle + last.direction).normalized(), length);
+  const Vec3 mean = (first.direction + 4.0 * middle + last.direction).normalized();
+  if (length * (mean - first.direction).norm() < kApart_mm) {
+    tip.cut.march(length);
+    return false;
+  }
+  tip.cut.turn(mean, length);
   tip.set_state(TipContact::State::cut);
   return true;
 }

@@ -9,7 +9,7 @@ namespace stylet {
 /// a surface that breaks, the tissue that the tip has pushed ahead springs back, so that one to three millimetres are
 /// cut in one sub-step, on which the strain at the tip, and with it the direction, changes as much as the force. A long
 /// cut therefore takes the mean of its directions, so that the track does not depend on the time step.
-/// @return false, with nothing changed, where the cut is short
+/// @return false, with nothing changed, where the cut is short, or its end would hardly move
 [[nodiscard]] bool aim_long_cut(const Contacts& contacts);
 
 }  // namespace stylet

@@ -21,20 +21,6 @@ TipReach::TipReach(int grips, int most_own)
       change_(MatX::Zero(columns_.rows(), kLook)),
       work_(MatX::Zero(std::max(of_own_.rows(), of_sliding_.rows()), kCount)) {}
 
-TipLaw TipReach::law(const Contacts& all) {
-  TipLaw law;
-  law.force = all.tip.force;
-  law.v.head<3>() = all.tip.force;
-  law.slope.topRows<3>().setIdentity();
-  const ContactCompliance& tissue = all.tissue.compliance();
-  if (tissue.stiffens()) {
-    const TipRelief relief(tissue, all.tip.force, Vec3::Zero());  // ρ does not depend on the others
-    law.v.tail<3>() = -relief.spared();
-    law.slope.bottomRows<3>() = -relief.kept();
-  }
-  return law;
-}
-
 /// Writes V of a contact at rest at the present place of the tip (3 × 6).
 void TipReach::write(const Contacts& all, int grip, Eigen::Ref<MatX> V) const {
   const int point = all.point(grip + 1);
@@ -48,7 +34,7 @@ void TipReach::write(const Contacts& all, int grip, Eigen::Ref<MatX> V) const {
 }
 
 Eigen::Ref<const VecX> TipReach::remember(const Contacts& all, const RestingMatrix& matrix) {
-  const TipLaw now = law(all);
+  const TipLaw now = TipLaw::of(all);
   const Vec6 w = look_.at(all.tip.force);
   MatX& V = change_;
   auto usual = columns_.col(kUsual).head(matrix.rows());
@@ -61,10 +47,9 @@ Eigen::Ref<const VecX> TipReach::remember(const Contacts& all, const RestingMatr
 }
 
 void TipReach::look(const Contacts& all, const RestingMatrix& matrix) {
-  look_ = start_ = law(all);
+  look_ = start_ = TipLaw::of(all);
   const Vec3& x = all.tip.cut.x();
-  if (!((x - looked_at_).norm() < kSamePlace_mm)) columns_.middleCols<6>(kSlope).setZero();
-  looked_at_ = x;
+  if (!((x - at_.x).norm() < kSamePlace_mm)) columns_.middleCols<6>(kSlope).setZero();
   at_ = {x, 0.0};
   taken_ = as_usual_ = 0.0;
   std::fill(seen_.begin(), seen_.end(), 0.0);
@@ -144,7 +129,7 @@ void TipReach::visit(const Contacts& all, int first, int end, RestingGrips& grip
 // NOLINTEND(performance-unnecessary-value-param)
 
 double TipReach::begin(const Contacts& all, RestingGrips& grips) {
-  start_ = law(all);
+  start_ = TipLaw::of(all);
   const Eigen::Index own = grips.held().others();
   auto held = held_.topRows(own);
   held = of_own_.topRows(own);

@@ -3,19 +3,9 @@
 
 #include "coupling/balance/contacts.hpp"
 #include "coupling/balance/resting_grips.hpp"
+#include "coupling/balance/tip_law.hpp"
 
 namespace stylet {
-
-/// v of TipReach as a linear function of the force on the tip.
-struct TipLaw {
-  using Vec6 = Eigen::Matrix<double, 6, 1>;
-
-  Vec3 force = Vec3::Zero();  ///< [N]
-  Vec6 v = Vec6::Zero();      ///< [N] under this force
-  Eigen::Matrix<double, 6, 3> slope = Eigen::Matrix<double, 6, 3>::Zero();
-
-  [[nodiscard]] Vec6 at(const Vec3& now) const { return v + slope * (now - force); }
-};
 
 /// A place of the tip.
 struct TipPlace {
@@ -87,7 +77,6 @@ class TipReach {
   using Vec6 = TipLaw::Vec6;
   using Weights = Eigen::Matrix<double, TipColumns::kCount, 1>;
 
-  [[nodiscard]] static TipLaw law(const Contacts& all);
   [[nodiscard]] Weights weights(const Contacts& all) const;
   void write(const Contacts& all, int grip, Eigen::Ref<MatX> V) const;
 
@@ -95,7 +84,6 @@ class TipReach {
   std::vector<double> seen_;             ///< [mm] (grips) length of cut at the last visit
   TipLaw look_, start_;                  ///< at the last look, and at the start of the sub-step
   TipPlace at_;                          ///< at the start of the sub-step
-  Vec3 looked_at_ = Vec3::Zero();        ///< [mm] LPS, place of the tip at the last look
   double taken_ = 0.0, as_usual_ = 0.0;  ///< how often the usual E is in the forces of take(), and in the present E
   MatX of_own_, of_sliding_;  ///< (3 own, or sliding, × TipColumns::kCount) images Wᵀ V, and Zᵀ V of SlidingRows
   Weights of_forces_ = Weights::Zero();  ///< the same for the forces of take()
