@@ -4,8 +4,6 @@
 namespace stylet {
 
 namespace {
-constexpr auto kNow = TipColumns::kNow, kSlope = TipColumns::kSlope, kLook = TipColumns::kLook,
-               kUsual = TipColumns::kUsual, kCount = TipColumns::kCount;
 /// [mm] From a shorter cut no derivative is computed.
 constexpr double kShortestCut_mm = 1e-3;
 /// [mm] A derivative is not used where the tip has moved further since it was computed.

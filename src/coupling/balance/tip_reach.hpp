@@ -24,21 +24,20 @@ struct TipColumns {
 /// (TipRelief), the tip moves the contacts at rest by
 ///   V v,   V = (A_rt, C_r),   v = (λ, −ρ),
 /// where C_r is the part of A_rt that has the needle's own scale. (Where tissue creeps, A_rt includes the creep of a
-/// sub-step, and the wide part F_rt follows from both.) V changes as the tip cuts on. It is known at the last
-/// look at all contacts at rest, V_l; from there each contact's rows go on linearly in the length s of cut, as its
-/// last two visits say. Of E, how much further the tip moves the contacts at rest than the linear law of the last look
-/// says,
+/// sub-step, and the wide part F_rt follows from both.) V changes as the tip cuts on. It is known at the last look at
+/// all contacts at rest, V_l; from there each contact's rows go on linearly in the length s of cut, as its last two
+/// visits say. Of E, how much further the tip moves the contacts at rest than the linear law of the last look says,
 ///   E = V(s) v − V_l w,   w = v_l + v′_l (λ − λ_l),
 /// the moved needle feels A_or B⁻¹ E = Wᵀ E with the solved columns W = B⁻¹ A_ro (HeldTissue), which takes only the
 /// images Wᵀ V. Most of E is like that directly before the last look, the usual one, whose answer at rest, B⁻¹ E, is
 /// known. Nothing allocates after construction.
-class TipReach {
+class TipReach : private TipColumns {
  public:
   /// @param most_own largest number of contacts of the moved needle, its tip included
   TipReach(int grips, int most_own);
 
   /// Nothing is known of E.
-  void forget() { columns_.col(TipColumns::kUsual).setZero(); }
+  void forget() { columns_.col(kUsual).setZero(); }
   /// Before a look: the present E becomes the usual one. @return it [mm] (rows)
   [[nodiscard]] Eigen::Ref<const VecX> remember(const Contacts& all, const RestingMatrix& matrix);
   /// At a look: E begins at zero.
@@ -75,22 +74,21 @@ class TipReach {
 
  private:
   using Vec6 = TipLaw::Vec6;
-  using Weights = Eigen::Matrix<double, TipColumns::kCount, 1>;
+  using Weights = Eigen::Matrix<double, kCount, 1>;
 
   [[nodiscard]] Weights weights(const Contacts& all) const;
   void write(const Contacts& all, int grip, Eigen::Ref<MatX> V) const;
 
-  MatX columns_;                         ///< [mm/N] (rows × TipColumns::kCount)
+  MatX columns_;                         ///< [mm/N] (rows × kCount)
   std::vector<double> seen_;             ///< [mm] (grips) length of cut at the last visit
   TipLaw look_, start_;                  ///< at the last look, and at the start of the sub-step
   TipPlace at_;                          ///< at the start of the sub-step
   double taken_ = 0.0, as_usual_ = 0.0;  ///< how often the usual E is in the forces of take(), and in the present E
-  MatX of_own_, of_sliding_;  ///< (3 own, or sliding, × TipColumns::kCount) images Wᵀ V, and Zᵀ V of SlidingRows
+  MatX of_own_, of_sliding_;             ///< (3 own, or sliding, × kCount) images Wᵀ V, and Zᵀ V of SlidingRows
   Weights of_forces_ = Weights::Zero();  ///< the same for the forces of take()
-  Eigen::Matrix<double, TipColumns::kLook, 2> of_memory_ =
-      Eigen::Matrix<double, TipColumns::kLook, 2>::Zero();  ///< of the memory at rest, and
-                                                            ///< of the present forces
-  MatX held_;           ///< (3 own × TipColumns::kCount) of_own_ after the sliding contacts have yielded
+  /// The same for the memory at rest, and for the present forces.
+  Eigen::Matrix<double, kLook, 2> of_memory_ = Eigen::Matrix<double, kLook, 2>::Zero();
+  MatX held_;           ///< (3 own × kCount) of_own_ after the sliding contacts have yielded
   MatX change_, work_;  ///< work space
 };
 
