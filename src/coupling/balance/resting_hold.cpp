@@ -75,6 +75,7 @@ void RestingHold::take_force(int grip, const Vec3& force) {
 
 void RestingHold::show() {
   if (!forces_.are_known() || std::exchange(shown_, true)) return;
+  all_.tissue.compliance().release_tip();
   forces_.follow(own_forces(), grips());
   forces_.compute(0, grips().count(), grips());
   const auto forces = forces_.computed(grips());
@@ -175,9 +176,7 @@ void RestingHold::take_contacts() {
 void RestingHold::take_start(bool columns) {
   forces_.take(columns, all_, std::span(whole_.rows().frame).subspan(1), grips(), own_forces());
   reach_.take(columns, all_, grips(), forces_.reference(grips().matrix()));
-  if (!all_.tissue.memory().on()) return;
-  creep_.take(all_, own_.all());
-  if (columns) points_.take(all_.tissue.compliance().points());
+  if (all_.tissue.memory().on()) creep_.take(all_, own_.all());
 }
 
 bool RestingHold::begin(double h) {
@@ -208,7 +207,8 @@ bool RestingHold::begin(double h) {
     take_start(looks || others);
   }
   if (!looks) go_on();
-  all_.tissue.compliance().restrict_tip(own_.all());
+  points_.take(all_.tissue.compliance().points());
+  all_.tissue.compliance().restrict_tip(points_.free());
   begin_balance();
   return true;
 }

@@ -4,6 +4,7 @@
 #include "coupling/contacts/shaft_contact.hpp"
 
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace stylet {
@@ -29,6 +30,7 @@ class RestingPoints {
   [[nodiscard]] std::span<const int> free() const { return free_; }
   /// Takes over points that were added. @param points number of all points
   void take(int points) {
+    if (std::exchange(known_, points) == points) return;
     free_.clear();
     for (int point = 1; point < points; ++point) {
       if (rests_[static_cast<std::size_t>(point)] == 0) free_.push_back(point);
@@ -39,6 +41,7 @@ class RestingPoints {
   std::vector<int> all_;
   std::vector<char> rests_;  ///< (points)
   std::vector<int> free_;
+  int known_ = 1;  ///< number of points that were taken over
 };
 
 }  // namespace stylet
