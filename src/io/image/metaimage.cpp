@@ -124,7 +124,7 @@ Result<> check_place(const std::set<std::string>& keys, const std::string& sourc
 /// spelling only. A header in which MetaIO might see other lines than this function is an error.
 Result<Announced> announced_in(const fs::path& path) {
   const std::string source = path.string();
-  constexpr std::size_t kLongest = 4095;
+  constexpr std::size_t kLongest = 4095, kRoom = 254;
   std::ifstream file(path, std::ios::binary);
   Announced found;
   for (int number = 1;; ++number) {
@@ -137,15 +137,15 @@ Result<Announced> announced_in(const fs::path& path) {
     if (line->text.size() > kLongest) wrong = "it is longer than 4095 characters";
     if (line->lone_return) wrong = "it ends in a carriage return alone";
     if (separator == std::string::npos || key.empty()) wrong = "it is not of the form KEY = VALUE";
+    if (key.size() > kRoom) wrong = "its key has more than 254 characters";
     if (wrong != nullptr) {
       return input_error(fmt::format("{}, line {}", source, number),
                          fmt::format("the header of the MetaImage file is damaged: {}", wrong),
                          "Copy or export it again");
     }
     const std::string value = trimmed(line->text.substr(separator + 1));
-    // MetaIO copies these texts into 255 bytes each.
+    // MetaIO copies these texts, and all keys, into 255 bytes each.
     constexpr std::array<std::string_view, 4> kShort{"Comment", "Name", "ObjectType", "ObjectSubType"};
-    constexpr std::size_t kRoom = 254;
     if (value.size() > kRoom && std::find(kShort.begin(), kShort.end(), key) != kShort.end()) {
       return input_error(fmt::format("{}, line {}", source, number),
                          fmt::format("{} has {} characters, at most {} are expected", key, value.size(), kRoom),

@@ -168,6 +168,7 @@ TEST(HostileImages, no_line_of_a_metaimage_header_hides_from_the_checks) {
   expect("NDims = 3", "NDims\n= 11", {"m.mha, line 2", "KEY = VALUE"});
   expect("NDims = 3", "Comment = " + std::string(5000, 'x') + "\nNDims = 3", {"m.mha, line 2", "4095"});
   expect("NDims = 3", "Comment = " + std::string(255, 'x') + "\nNDims = 3", {"m.mha, line 2", "Comment has 255"});
+  expect("NDims = 3", std::string(255, 'x') + " = 1\nNDims = 3", {"m.mha, line 2", "more than 254"});
   expect("ElementDataFile = LOCAL", "ElementDataFile : /etc/passwd", {"an absolute path is not followed"});
   expect("ElementDataFile = LOCAL", "elementdatafile = LOCAL\nElementDataFile = /etc/passwd",
          {"an absolute path is not followed"});
