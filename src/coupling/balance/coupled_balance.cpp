@@ -3,7 +3,6 @@
 
 #include "core/dense_kernels.hpp"
 #include "core/largest.hpp"
-#include "coupling/balance/long_cut.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -392,22 +391,17 @@ bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
   Progress progress;
   progress.snaps = tangent_.is_damped();
   Index border_tet = -1;  // element of the tip when it was last added to the matrix
-  int earlier = 0;        // iterations up to the last balance in which a surface broke or a cut was aimed anew
-  bool aimed_anew = false;
+  int before_break = 0;   // iterations up to the balance in which a surface broke
   for (int all = 0; all < kMaxNewton; ++all) {
-    int iteration = all - earlier;
+    int iteration = all - before_break;
     double error = look(h);
     const bool found = iteration > 0 && !progress.changed && error < 1.0;
-    const bool turns = found && !aimed_anew && aim_long_cut(parts_.contacts);
-    if (turns || (found && tip.breaks_surface())) {  // a surface at the end of a long cut is met where that leads
-      if (!turns) {
-        const double hand_N =
-            parts_.hand.when_tip_reached(tip.ahead.limit(), tip.history.start, parts_.contacts.own_forces());
-        parts_.path.break_surface(hand_N, step);
-        tip.aim(parts_.contacts.forces());
-      }
-      aimed_anew = turns;
-      earlier = all;
+    if (found && tip.breaks_surface()) {
+      const double hand_N =
+          parts_.hand.when_tip_reached(tip.ahead.limit(), tip.history.start, parts_.contacts.own_forces());
+      parts_.path.break_surface(hand_N, step);
+      tip.aim(parts_.contacts.forces());
+      before_break = all;
       search_.forget();
       iteration = 0;  // the search for the next balance starts here
       error = look(h);

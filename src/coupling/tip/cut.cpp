@@ -21,7 +21,7 @@ void Cut::put(const Vec3& x, const MaterialPoint& at) {
 void Cut::forget() {
   x_.setZero();
   at_ = {};
-  aim({});
+  direction_ = Vec3::UnitZ();
   blocked_ = false;
   stale_ = false;
   count_from_here();

@@ -10,12 +10,6 @@ namespace stylet {
 /// undeformed.
 class Cut {
  public:
-  /// Where the tip cuts to at a place.
-  struct Aim {
-    Vec3 along = Vec3::UnitZ();      ///< LPS, in the deformed tissue; of any length
-    Vec3 direction = Vec3::UnitZ();  ///< LPS, unit vector in the undeformed tissue
-  };
-
   /// @param locator, tissue outlive the cut
   Cut(const Locator& locator, TissueResponse& tissue) : locator_(locator), tissue_(tissue) {}
 
@@ -27,7 +21,6 @@ class Cut {
   [[nodiscard]] const Vec3& x_start() const { return x_start_; }  ///< [mm] LPS, the end at the start of the sub-step
   [[nodiscard]] const MaterialPoint& at_start() const { return at_start_; }
   [[nodiscard]] const Vec3& direction() const { return direction_; }  ///< LPS, unit vector of the cut
-  [[nodiscard]] const Aim& first_aim() const { return first_aim_; }   ///< as the last aim() set it
   [[nodiscard]] double advance() const { return advance_; }           ///< [mm] length of cut in this sub-step
   /// Whether the cut has met a surface in this sub-step; its end is then on the surface.
   [[nodiscard]] bool is_blocked() const { return blocked_; }
@@ -44,15 +37,8 @@ class Cut {
   void begin();
   /// Reads the compliance at the end again, in case it has arrived; the tissue does not move by this.
   void take_compliance() { stale_ = !tissue_.move_tip(at_, x_); }
-  void aim(const Aim& aim) {
-    first_aim_ = aim;
-    direction_ = aim.direction;
-  }
-  /// Turns the cut about its start, and moves its end `advance` [mm] from there. @param direction LPS, unit vector
-  void turn(const Vec3& direction, double advance) {
-    direction_ = direction;
-    march(advance);
-  }
+  /// @param direction LPS, unit vector
+  void aim(const Vec3& direction) { direction_ = direction; }
   /// Moves the end to `advance` [mm] beyond its place at the start of the sub-step, or to the first surface before
   /// that.
   void march(double advance);
@@ -72,7 +58,6 @@ class Cut {
   MaterialPoint at_;
   Vec3 x_start_ = Vec3::Zero();
   MaterialPoint at_start_;
-  Aim first_aim_;  ///< at the start of the cut
   Vec3 direction_ = Vec3::UnitZ();
   double advance_ = 0.0;
   bool blocked_ = false;

@@ -80,9 +80,9 @@ void TipContact::begin(const ContactForces& forces) {
 /// deformation gradient F = I + ∇u of the tissue, that is F⁻¹ t. Where the track's end has drifted off the axis,
 /// because the base moved sideways while the tip did not cut, the cut leads back to the axis. A bevelled tip cuts
 /// towards a line beside the axis instead.
-Cut::Aim TipContact::aim_here(const ContactForces& forces) const {
+void TipContact::aim(const ContactForces& forces) {
   const Vec3 t = tangent();
-  const Mat3 gradient = tissue_.compliance().gradient_at_tip(tissue_.all_forces(forces));
+  const Mat3 F = Mat3::Identity() + tissue_.compliance().gradient_at_tip(tissue_.all_forces(forces));
   Vec3 along = t + lead_of_bevel(t);
   if (!std::isfinite(lateral_hold_)) {
     const Vec3 gap = cut.x() + tissue_.displacement(ContactCompliance::kTip, forces) - needle_.point(needle_.length());
@@ -90,14 +90,10 @@ Cut::Aim TipContact::aim_here(const ContactForces& forces) const {
     if (back.norm() > kSteepest) back *= kSteepest / back.norm();
     along += back;
   }
-  return {along, undeformed(along, gradient)};
-}
-
-Vec3 TipContact::undeformed(const Vec3& along, const Mat3& gradient) const {
-  const Mat3 F = Mat3::Identity() + gradient;
-  const Vec3 d = F.determinant() > kLeastVolume ? Vec3(F.inverse() * along) : along;
+  Vec3 d = F.determinant() > kLeastVolume ? Vec3(F.inverse() * along) : along;
   // Strains beyond the linear model must not turn the cut around.
-  return (d.dot(tangent()) < 0.5 * d.norm() ? along : d).normalized();
+  if (d.dot(t) < 0.5 * d.norm()) d = along;
+  cut.aim(d.normalized());
 }
 
 bool TipContact::breaks_surface() const {

@@ -61,12 +61,7 @@ class TipContact {
   /// Chooses the direction of the cut by the shape of the needle and by the deformation of the tissue at the tip.
   /// Behind a surface that breaks it is chosen anew: the tissue before the surface may be softer and have been
   /// squeezed.
-  void aim(const ContactForces& forces) { cut.aim(aim_here(forces)); }
-  /// Where the tip cuts to from its present place.
-  [[nodiscard]] Cut::Aim aim_here(const ContactForces& forces) const;
-  /// The direction of a cut along `along` in tissue with the displacement gradient ∇u: F⁻¹ along, with F = I + ∇u. LPS,
-  /// unit vector; it is that of `along` where F is beyond the linear model.
-  [[nodiscard]] Vec3 undeformed(const Vec3& along, const Mat3& gradient) const;
+  void aim(const ContactForces& forces);
   /// Whether the present force exceeds the strength of the surface ahead. To be called for a balance only: a broken
   /// surface does not heal, and the forces of an iterate are not yet forces on the tissue.
   [[nodiscard]] bool breaks_surface() const;

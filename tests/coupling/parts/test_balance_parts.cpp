@@ -333,7 +333,7 @@ TEST(TissueBlock, foresees_how_gaps_change_with_a_cut_that_leads_aside) {
   rows.take_places(needle.contacts);
   block.gather(needle.contacts, block.renew(needle.contacts));
   const Vec3 aside = Vec3(0.2, 0.0, 1.0).normalized();
-  needle.tip.cut.aim({aside, aside});
+  needle.tip.cut.aim(aside);
   block.gather_drift(needle.contacts, {}, rows);
   EXPECT_NEAR((rows.tip.drift.head<3>() - (aside - Vec3::UnitZ())).norm(), 0.0, 1e-12)
       << "this tissue is the same everywhere";

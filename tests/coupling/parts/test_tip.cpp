@@ -21,7 +21,7 @@ TEST(Cut, goes_where_it_is_aimed_and_stops_at_a_surface) {
   Cut cut(*block.locator, *block.tissue);
   const Vec3 from(1, 2, 18.5);
   cut.put(from, block.at(from));
-  cut.aim({});
+  cut.aim(Vec3::UnitZ());
   cut.march(1.0);
   EXPECT_FALSE(cut.is_blocked());
   EXPECT_NEAR((cut.x() - Vec3(1, 2, 19.5)).norm(), 0.0, 1e-12);
@@ -37,7 +37,7 @@ TEST(Cut, counts_its_way_from_where_the_sub_step_began) {
   SimpleTissue block;
   Cut cut(*block.locator, *block.tissue);
   cut.put(Vec3(1, 2, 5), block.at(Vec3(1, 2, 5)));
-  cut.aim({});
+  cut.aim(Vec3::UnitZ());
   cut.march(0.4);
   cut.march(0.3);
   EXPECT_NEAR(cut.x().z(), 5.3, 1e-12) << "iterates do not add up";

@@ -59,8 +59,7 @@ TEST(DemoInsertions, find_a_balance_in_all_but_a_few_steps) {
 }
 
 /// A needle through the gland's base into the bladder, and a thin one that buckles on the skin: paths on which the
-/// balance once fell. A needle along the urethra, whose wall it leaves at a small angle: where it does depends on how a
-/// long cut behind the skin is aimed, by 0.8 mm once.
+/// balance once fell.
 TEST(OddPaths, have_a_balance_in_every_step_with_any_time_step_and_the_same_events) {
   const Scenario demo = measure::demo_scenario();
   MeshOptions options;
@@ -76,8 +75,7 @@ TEST(OddPaths, have_a_balance_in_every_step_with_any_time_step_and_the_same_even
   };
   const double euler_N = 0.35;  // 2.05 π² E I / L² of the thin needle between hand and hole
   for (const Path& path :
-       {Path{1.27, 1.0, {12, 0, -85}, 104.0, 9.0, true}, Path{0.51, 0.26, {8, 2, -85}, 70.0, 2.0 * euler_N, false},
-        Path{1.27, 1.0, {0.08, -1.16, -85}, 82.0, 9.0, true}}) {
+       {Path{1.27, 1.0, {12, 0, -85}, 104.0, 9.0, true}, Path{0.51, 0.26, {8, 2, -85}, 70.0, 2.0 * euler_N, false}}) {
     Scenario scenario = demo;
     scenario.needle.diameter_mm = path.diameter_mm;
     scenario.needle.lumen_diameter_mm = path.lumen_mm;
