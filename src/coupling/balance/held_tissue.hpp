@@ -46,6 +46,7 @@ class HeldTissue {
               Eigen::Ref<VecX> motion) const;
   /// A_or λ. @param forces [N] λ, on the tissue at the contacts at rest (3 grips) @param motion (3 known) written
   void displacement(const Eigen::Ref<const VecX>& forces, Eigen::Ref<VecX> motion) const;
+  // NOLINTBEGIN(performance-unnecessary-value-param): the results are written through their views
   /// Wᵀ Y with the solved columns W = B⁻¹ Sᵀ A_ro, sliding contacts held. @param Y [mm] (rows × k) @param motion
   /// (3 known × k) written
   void answers(const Eigen::Ref<const MatX>& Y, Eigen::Ref<MatX> motion) const {
@@ -57,6 +58,7 @@ class HeldTissue {
     dense::transposed_product(work, solved_.block(from, 0, Y.rows(), others()), Y);
     motion += work;
   }
+  // NOLINTEND(performance-unnecessary-value-param)
   /// W of the rows from `from` on. @param count their number
   [[nodiscard]] auto solved(Eigen::Index from, Eigen::Index count) const {
     return solved_.block(from, 0, count, others());
