@@ -14,7 +14,6 @@ namespace stylet {
 ///   p = (r − 1) m,   m + τ ṁ = f,
 /// with the creep factor r and the contacts' forces f, at every point, including points that the needle has left.
 /// Backward Euler over a sub-step of h gives
-/// Backward Euler over a sub-step of h:
 ///   p = share f + past,   share = (r − 1) h / (h + τ),   past = (r − 1) τ / (h + τ) m_before.
 /// docs/theory/tissue.md derives it. Nothing allocates after construction.
 class TissueMemory {

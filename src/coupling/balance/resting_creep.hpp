@@ -8,8 +8,8 @@
 
 namespace stylet {
 
-/// What creeping tissue remembers of the forces λ on all contacts (TissueMemory), where needles at rest follow the
-/// moved one (RestingHold). In each sub-step the memory m goes towards λ.
+/// The displacements by the forces m that creeping tissue remembers at all contacts (TissueMemory), while the needles
+/// at rest follow the moved needle (RestingHold). In each sub-step m goes towards the present forces λ.
 /// - The contacts at rest have still to be moved by (r − 1) F (m − λ), which fades by the same factor in each sub-step.
 /// - The moved needle's contacts are displaced by F_or m of the contacts at rest, which goes towards F_or λ, so that
 ///   only contacts whose λ changes are read.

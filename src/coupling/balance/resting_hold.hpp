@@ -20,11 +20,12 @@ namespace stylet {
 /// balanced alone, in a tissue that they hold: with the compliance A_oo − A_or S B⁻¹ Sᵀ A_ro (RestingGrips). The forces
 /// at rest follow by the same linear equations (RestingForces).
 ///
-/// Contacts at rest are visited in turn, some in each sub-step: their forces are computed, their laws are looked at,
-/// and the tip's effect on them is (TipReach). Those that slide are visited in each sub-step. So a sub-step reads
-/// O(contacts of the moved needle × contacts visited) numbers. Linear equations leave over what the needles' bending,
-/// the tip's way through the tissue and creep change at rest. Every now and then all of it is looked at and solved for
-/// (CoupledBalance::settle_rest).
+/// In each sub-step the forces along the needles are computed for all contacts at rest, and their friction laws are
+/// looked at. All three components of a force are computed for some contacts in turn, and for those that slide,
+/// together with the effect of the tip on these contacts (TipReach). So a sub-step reads O(contacts of the moved needle
+/// × contacts at rest) numbers, most of them once per contact at rest. Linear equations leave over what the needles'
+/// bending, the tip's way through the tissue and creep change at rest. Every twenty sub-steps all of it is looked at
+/// and solved for (CoupledBalance::settle_rest).
 ///
 /// Where a contact at rest begins or ends to slip, the moved needle is balanced again with it. Where that does not end,
 /// or where B does not fit any longer, all needles have to be balanced together. Nothing allocates after construction.
