@@ -147,7 +147,9 @@ ChildOutcome outcome_of(pid_t child, int result, int noise, const ChildLimits& l
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   const bool complete = !outcome.result.empty() && outcome.result.back() == kCompleteMark;
-  if (!in_time || (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL) && !complete)) {
+  if (!in_time) {
+    outcome.end = ChildEnd::overdue;
+  } else if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL) && !complete) {
     outcome.end = ChildEnd::timed_out;  // the hard limit on processor time causes SIGKILL
   } else if (WIFSIGNALED(status)) {
     outcome.end = ChildEnd::signalled;

@@ -15,7 +15,8 @@ struct ChildLimits {
   std::size_t memory_bytes = std::size_t{4} << 30;  ///< in addition to the memory that the process begins with
 };
 
-enum class ChildEnd { finished, signalled, exited, timed_out, not_started };
+/// timed_out: it had all of its processor time; overdue: all of its real time, but not of its processor time
+enum class ChildEnd { finished, signalled, exited, timed_out, overdue, not_started };
 
 struct ChildOutcome {
   ChildEnd end = ChildEnd::not_started;

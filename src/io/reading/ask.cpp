@@ -132,6 +132,9 @@ Error died(const fs::path& path, const ChildOutcome& outcome, const ChildLimits&
                      "Close other programs and try again");
     case ChildEnd::timed_out:
       return input_error(path.string(), fmt::format("the parser did not finish within {:.0f} s", limits.cpu_s), cure);
+    case ChildEnd::overdue:  // says nothing about the file: a parser that hangs takes processor time
+      return failure(path.string(), fmt::format("reading it was not done after {:.0f} s", limits.wall_s),
+                     "Try again when this machine and its disk are less busy");
     case ChildEnd::signalled:
       return input_error(path.string(), fmt::format("the parser stopped (signal {})", outcome.code), cure);
     case ChildEnd::exited:

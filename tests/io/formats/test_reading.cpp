@@ -82,7 +82,7 @@ TEST(Reading, any_end_of_the_program_becomes_an_input_error) {
 TEST(Reading, a_program_that_does_not_end_is_ended) {
   const auto start = std::chrono::steady_clock::now();
   EXPECT_EQ(end_within("loop", {.cpu_s = 1.0, .wall_s = 30.0}).end, ChildEnd::timed_out);
-  EXPECT_EQ(end_within("sleep", {.cpu_s = 10.0, .wall_s = 0.5}).end, ChildEnd::timed_out);
+  EXPECT_EQ(end_within("sleep", {.cpu_s = 10.0, .wall_s = 0.5}).end, ChildEnd::overdue);
   EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 25.0);
 }
 

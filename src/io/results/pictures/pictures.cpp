@@ -90,6 +90,7 @@ std::string reason_of(const detail::ChildOutcome& outcome) {
     case detail::ChildEnd::exited:
       return "the OpenGL driver ended its process";
     case detail::ChildEnd::timed_out:
+    case detail::ChildEnd::overdue:
       return "drawing took too long";
     case detail::ChildEnd::not_started:
       return std::string("no process could be started for drawing: ") + std::strerror(outcome.code);
