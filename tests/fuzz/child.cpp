@@ -3,6 +3,7 @@
 
 #include "library_faults.hpp"
 
+#include <fcntl.h>
 #include <sanitizer/common_interface_defs.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -18,6 +19,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <string>
 
 // The counters of clang: how often each edge of the program was taken. The linker names both ends of this array.
 extern "C" {
@@ -31,6 +33,7 @@ namespace {
 
 constexpr int kKnownFault = 99, kReported = 98;  // exit status of a child
 constexpr std::size_t kLargestInput = 8U << 20;  // [bytes]; libFuzzer makes none beyond 1 MB of itself
+constexpr std::size_t kLongestPlace = 256;       // [bytes] of the name of a library and an address, with its end
 constexpr long kMostMemory_kB = 1 << 20;         // of a child, beyond which the next input has a new one
 
 bool this_is_child = false;
@@ -38,8 +41,10 @@ int faults_left = 0;
 pid_t child = 0;  ///< 0: there is none
 int to_child = -1, from_child = -1;
 int reports = -1;                 ///< where the sanitizer's reports go, which libFuzzer closes for all others
-unsigned char* shared = nullptr;  ///< input, and the counters behind it
+unsigned char* shared = nullptr;  ///< input, the place of a new fault, and the counters
 
+unsigned char* place_of_fault() { return shared + kLargestInput; }
+unsigned char* shared_counters() { return place_of_fault() + kLongestPlace; }
 std::size_t counters() { return static_cast<std::size_t>(end_of_counters - begin_of_counters); }
 
 bool transfer(ssize_t (*call)(int, void*, std::size_t), int pipe, void* data, std::size_t size) {
@@ -72,7 +77,7 @@ long memory_kB() {
   while (receive(inputs, size)) {
     std::fill(begin_of_counters, end_of_counters, 0);
     read({reinterpret_cast<const char*>(shared), size});
-    std::memcpy(shared + kLargestInput, begin_of_counters, counters());
+    std::memcpy(shared_counters(), begin_of_counters, counters());
     if (!send(answers, memory_kB() > kMostMemory_kB ? 1 : 0)) break;
   }
   std::_Exit(0);
@@ -87,8 +92,8 @@ void end_child() {
 void start_child(void (*read)(std::string_view)) {
   if (shared == nullptr) {
     ::signal(SIGPIPE, SIG_IGN);
-    void* const memory =
-        ::mmap(nullptr, kLargestInput + counters(), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    const std::size_t size = kLargestInput + kLongestPlace + counters();
+    void* const memory = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (memory == MAP_FAILED) std::exit(2);
     shared = static_cast<unsigned char*>(memory);
   }
@@ -107,6 +112,19 @@ void start_child(void (*read)(std::string_view)) {
   from_child = answers[0];
 }
 
+/// The fault of the child that has ended is known from now on. @return whether the child said where it is
+bool keep_as_known(std::string_view input) {
+  const std::string place = reinterpret_cast<const char*>(place_of_fault());
+  if (place.empty()) return false;
+  add_known_place(place);
+  const std::string name = "fault-" + place;
+  const int file = ::open(name.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  if (file < 0 || ::write(file, input.data(), input.size()) != static_cast<ssize_t>(input.size())) std::exit(2);
+  ::close(file);
+  ::dprintf(reports, "%s\n", name.c_str());
+  return true;
+}
+
 }  // namespace
 
 bool is_child() { return this_is_child; }
@@ -118,23 +136,30 @@ void run_in_child(std::string_view input, int faults, void (*read)(std::string_v
   if (child == 0) start_child(read);
   input = input.substr(0, kLargestInput);
   std::copy(input.begin(), input.end(), shared);
+  *place_of_fault() = 0;
   std::size_t tired = 0;
   const bool answered = send(to_child, input.size()) && receive(from_child, tired);
   int status = 0;
   if (answered) {
-    std::memcpy(begin_of_counters, shared + kLargestInput, counters());
+    std::memcpy(begin_of_counters, shared_counters(), counters());
     if (tired == 0) return;
     ::kill(child, SIGKILL);
     ::waitpid(child, &status, 0);
   } else {
     ::waitpid(child, &status, 0);
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != kKnownFault) {
+    if ((!WIFEXITED(status) || WEXITSTATUS(status) != kKnownFault) && !keep_as_known(input)) {
       if (!WIFEXITED(status) || WEXITSTATUS(status) != kReported)
         ::dprintf(reports, "==%d== ERROR: the child ended with the status 0x%x\n", child, status);
       std::abort();
     }
   }
   end_child();
+}
+
+void note_place(std::string_view place) {
+  if (!this_is_child || place.size() >= kLongestPlace) return;
+  std::copy(place.begin(), place.end(), place_of_fault());
+  place_of_fault()[place.size()] = 0;
 }
 
 void end_child_at_last_fault() {

@@ -9,7 +9,9 @@
 namespace stylet::fuzz {
 
 /// Lets the child read an input, and takes over what it covered. Where the child ends at a known fault
-/// (library_faults.hpp), the next input has a new one; at any other the fuzzer ends, behind the child's report.
+/// (library_faults.hpp), the next input has a new one, and also at the first fault at a place in a library: the input
+/// is kept in this folder as "fault-PLACE" then, and a line with this name ends the child's report. At any other the
+/// fuzzer ends, behind the child's report.
 /// @param read reads the input, in the child
 /// @param faults known ones that a child may go on after
 void run_in_child(std::string_view input, int faults, void (*read)(std::string_view input));
@@ -23,6 +25,9 @@ void end_child_after_report();
 void end_child_by_itself();
 
 bool is_child();
+
+/// To be called in a child before it ends at a fault that is not known: where in a library it is.
+void note_place(std::string_view place);
 
 /// To be called before libFuzzer closes the standard error, for the reports of children.
 void keep_stderr_for_children();

@@ -40,21 +40,30 @@ bool is_of_language(std::string_view library) {
          library.starts_with("libgcc_s.") || library.starts_with("ld-linux");
 }
 
-/// Whether a place in code, or that before it, is a known one. The second for places to which a call returns.
-bool is_known_place(const Dl_info& library, const void* address) {
-  const auto offset = reinterpret_cast<std::uintptr_t>(address) - reinterpret_cast<std::uintptr_t>(library.dli_fbase);
-  std::array<char, 256> place{};
-  for (const std::uintptr_t at : {offset, offset - 1}) {
-    const std::string_view name = name_of(library.dli_fname);
-    std::snprintf(place.data(), place.size(), "%.*s+0x%lx", static_cast<int>(name.size()), name.data(), at);
-    if (is_known(place.data())) return true;
-  }
-  return false;
+using Place = std::array<char, 256>;
+
+Place place_of(const Dl_info& library, std::uintptr_t offset) {
+  Place place{};
+  const std::string_view name = name_of(library.dli_fname);
+  std::snprintf(place.data(), place.size(), "%.*s+0x%lx", static_cast<int>(name.size()), name.data(), offset);
+  return place;
 }
 
-/// Whether the innermost function on the stack that is none of the language is at a known place. Functions of the
-/// language that the sanitizer replaces stand in this program, which names them and none of its own to others.
-bool is_known_stack(const void* fault) {
+std::uintptr_t offset_in(const Dl_info& library, const void* address) {
+  return reinterpret_cast<std::uintptr_t>(address) - reinterpret_cast<std::uintptr_t>(library.dli_fbase);
+}
+
+/// Whether a place in code, or that before it, is a known one. The second for places to which a call returns.
+bool is_known_place(const Dl_info& library, const void* address) {
+  const std::uintptr_t offset = offset_in(library, address);
+  return is_known(place_of(library, offset).data()) || is_known(place_of(library, offset - 1).data());
+}
+
+/// Calls `look` with the innermost place on the stack that is not of the language, if that is in a library. Functions
+/// of the language that the sanitizer replaces stand in this program, which names them and none of its own to others.
+/// @return what `look` returns, or false
+template <typename Look>
+bool look_at_library(const void* fault, const Look& look) {
   std::array<void*, 64> stack{};
   const int depth = ::backtrace(stack.data(), static_cast<int>(stack.size()));
   void* const* const end = stack.data() + depth;
@@ -67,10 +76,20 @@ bool is_known_stack(const void* fault) {
     Dl_info library{};
     if (::dladdr(*at, &library) == 0 || library.dli_fname == nullptr) return false;
     if (is_of_language(name_of(library.dli_fname))) continue;
-    if (library.dli_fbase != program.dli_fbase) return !is_own && is_known_place(library, *at);
+    if (library.dli_fbase != program.dli_fbase) return !is_own && look(library, *at);
     is_own = library.dli_sname == nullptr;
   }
   return false;
+}
+
+bool is_known_stack(const void* fault) { return look_at_library(fault, is_known_place); }
+
+/// Tells the fuzzer the place of a fault of a child that is not known.
+void note_stack(const void* fault) {
+  look_at_library(fault, [](const Dl_info& library, const void* address) {
+    note_place(place_of(library, offset_in(library, address)).data());
+    return true;
+  });
 }
 
 /// Whether the stack is full. Which function finds it so is chance: that which calls itself without end stands further
@@ -107,6 +126,7 @@ void at_signal(int signal, siginfo_t* info, void* context) {
     siglongjmp(after_known_fault, 1);
   }
   is_signal = true;
+  if (!is_overflow(signal, *info, machine)) note_stack(reinterpret_cast<void*>(machine.gregs[REG_RIP]));
   if (signal == SIGABRT) end_child_by_itself();
   const struct sigaction& theirs = before[static_cast<std::size_t>(signal)];
   ::sigaction(signal, &theirs, nullptr);
@@ -132,6 +152,7 @@ void at_report(const char* report) {
     if (!is_write) return;
     end_child_at_known_fault();
   }
+  note_stack(nullptr);
   end_child_after_report();
   ::sigaction(SIGABRT, &before[SIGABRT], nullptr);
   std::abort();
@@ -139,8 +160,11 @@ void at_report(const char* report) {
 
 }  // namespace
 
+void add_known_place(std::string_view place) { known_places += std::string(place) + " "; }
+
 void at_end_of_child() {
-  if (is_signal || !is_known_stack(nullptr)) return;
+  if (is_signal) return;
+  if (!is_known_stack(nullptr)) return note_stack(nullptr);
   count_one();
   end_child_at_known_fault();
 }
