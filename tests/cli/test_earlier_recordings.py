@@ -29,12 +29,13 @@ class EarlierRecordings(Serve):
 
     def test_of_insertions_repeat_but_for_what_was_mended_since_and_can_be_seen(self):
         # Another way to find a balance leaves the balance as it is, within its tolerance of 1e-8 in each sub-step. Since
-        # 0.1.0 the cut behind a surface that breaks is aimed anew, which changes forces by a millinewton.
+        # 0.1.0 the cut behind a surface that breaks is aimed anew, and again on its way, which changes forces by some
+        # millinewtons (0.2 % of the largest).
         for name in ("insert", "live"):
             told = self.succeed("insert", f"{name}/run.h5", "-o", f"again-{name}").stdout
             differ = re.search(r"differ from the recording's, .* by at most (\S+) N", told)
             if differ:
-                self.assertLess(float(differ[1]), 2e-3)
+                self.assertLess(float(differ[1]), 1e-2)
             else:
                 self.assertIn("to the last bit", told)
             self.succeed("fluoro", f"{name}/run.h5", "-o", f"{name}.png")

@@ -51,8 +51,8 @@ double ContactStates::contradiction_of_tip(const Trial& trial) const {
     case TipContact::State::open:
       return trial.opening;
     case TipContact::State::stick: {
-      const bool surface = tip.cut.is_blocked() || tip.ahead.is_surface();
-      return std::max(-trial.axial, surface ? 0.0 : trial.axial - tip.ahead.limit());
+      const bool held = tip.cut.is_blocked() || tip.cut.ends_leg() || tip.ahead.is_surface();
+      return std::max(-trial.axial, held ? 0.0 : trial.axial - tip.ahead.limit());
     }
     case TipContact::State::cut:
       return tip.cut.advance() > 0.0 ? 0.0 : tip.ahead.cutting() - trial.axial;

@@ -115,8 +115,6 @@ CoupledBalance::CoupledBalance(const BalanceParts& parts)
       tangent_(parts_.contacts.needle, system_, rows_, parts.most_contacts + 1),
       kept_(parts_.contacts.needle.state().size(), parts.most_contacts) {}
 
-void CoupledBalance::march(double advance) { parts_.contacts.tip.cut.march(advance); }
-
 /// Gathers the terms of the linear equations: the tissue's compliance among the contacts, the forces of the contacts,
 /// and the gaps between tissue and needle.
 void CoupledBalance::gather() {
@@ -299,20 +297,20 @@ void CoupledBalance::take_solution() {
   for (int c = 1; c < parts_.contacts.count(); ++c) slide(c);
 }
 
-/// Moves the cut to its place in the present solution. @return whether the cut ended at a surface or between two
-/// elements, where the tip is now held
+/// Moves the cut to its place in the present solution. @return whether the cut ended at a surface, between two elements
+/// or with its leg, where the tip is now held
 bool CoupledBalance::cut_on(double h) {
   TipContact& tip = parts_.contacts.tip;
   if (!tip.cuts()) return false;
   const double proposed = std::max(0.0, tip.cutting_law(h).way(system_.lambda[2]));
   const double before = tip.cut.advance();
   const Index tet = tip.cut.at().tet;
-  march(search_.next(before, proposed));
+  tip.cut.march_in_leg(search_.next(before, proposed));
   const double way = tip.cut.advance() - before;
   const Index now = tip.cut.at().tet;
   const bool ends = now != tet && now == search_.left_tet && way > 0.0 && way < kShortCut_mm;
   if (now != tet && way < 0.0) search_.left_tet = tet;
-  if (!ends && !tip.cut.is_blocked()) return false;
+  if (!ends && !tip.cut.is_blocked() && !tip.cut.ends_leg()) return false;
   if (ends) tip.toggles = kMostToggles + 1;  // the tip keeps this state for the sub-step
   tip.set_state(TipContact::State::stick);
   return true;
@@ -391,8 +389,8 @@ bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
   Progress progress;
   progress.snaps = tangent_.is_damped();
   Index border_tet = -1;  // element of the tip when it was last added to the matrix
-  int before_break = 0;   // iterations up to the balance in which a surface broke
-  for (int all = 0; all < kMaxNewton; ++all) {
+  int before_break = 0;   // iterations up to the balance in which a surface broke, or a leg of the cut ended
+  for (int all = 0; all < before_break + kMaxNewton; ++all) {
     int iteration = all - before_break;
     double error = look(h);
     const bool found = iteration > 0 && !progress.changed && error < 1.0;
@@ -404,6 +402,16 @@ bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
       before_break = all;
       search_.forget();
       iteration = 0;  // the search for the next balance starts here
+      error = look(h);
+    } else if (found && tip.cut.ends_leg()) {
+      if (parts_.path.end_leg(h, parts_.contacts.forces())) {
+        before_break = all;
+        search_.forget();
+        effort.renew();
+        iteration = 0;
+      }
+      progress.changed = true;
+      progress.steady = false;
       error = look(h);
     } else if (found) {
       watch_tangent(progress, iteration);

@@ -48,7 +48,6 @@ class CoupledBalance : public BalanceSolver {
   void take_solution();
   void slide(int load);
   bool cut_on(double h);
-  void march(double advance);
   [[nodiscard]] double error_of(int first, int end) const;
   [[nodiscard]] double error_of_tip() const;
   [[nodiscard]] bool resting_needles_lag() const;

@@ -189,13 +189,18 @@ double StaggeredBalance::imbalance() const {
 }
 
 /// Moves the end of the track by the length of cut.
-/// @param nearly whether the balance is near enough to trust that a surface has been met; the tip then sticks there
-/// @return false when the tip sticks at a surface
+/// @param nearly whether the balance is near enough to trust that a surface or the end of a leg has been met; the tip
+/// then sticks there @return false when it does
 bool StaggeredBalance::cut(bool nearly) {
   TipContact& tip = parts_.contacts.tip;
   if (!tip.cuts()) return true;
-  tip.cut.march(std::max(0.0, advance_));
-  if (!nearly || !tip.cut.is_blocked()) return true;
+  const double advance = std::max(0.0, advance_);
+  if (!nearly) {
+    tip.cut.march(advance);
+    return true;
+  }
+  tip.cut.march_in_leg(advance);
+  if (!tip.cut.is_blocked() && !tip.cut.ends_leg()) return true;
   tip.set_state(TipContact::State::stick);
   return false;
 }
@@ -223,6 +228,11 @@ bool StaggeredBalance::solve(double h, Effort& /*effort*/, Step& step) {
       continue;
     }
     if (cut(error < kNearly) && error < kTolerance) {
+      if (tip.cut.ends_leg()) {
+        parts_.path.end_leg(h, parts_.contacts.forces());
+        bent_.restart();
+        continue;
+      }
       if (!tip.breaks_surface()) return false;
       parts_.path.break_surface(
           parts_.hand.when_tip_reached(tip.ahead.limit(), tip.history.start, parts_.contacts.forces()), step);

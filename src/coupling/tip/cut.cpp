@@ -8,53 +8,66 @@ namespace stylet {
 namespace {
 /// [mm] Longest cut in a sub-step, and the range of the search for the next surface. Raised, the search takes longer.
 constexpr double kReach_mm = 4.0;
+/// [mm] Longest leg of a cut. Raised, a cut behind a surface that breaks keeps a direction that the tissue there has
+/// lost; lowered, its sub-step takes longer. A cut that follows the hand is shorter.
+constexpr double kLeg_mm = 0.4;
+constexpr auto kMostLegs = static_cast<std::size_t>(kReach_mm / kLeg_mm) + 1;
 }  // namespace
+
+Cut::Cut(const Locator& locator, TissueResponse& tissue) : locator_(locator), tissue_(tissue) {
+  legs_.reserve(kMostLegs);
+}
 
 void Cut::put(const Vec3& x, const MaterialPoint& at) {
   forget();
-  x_ = x;
-  at_ = at;
+  end_.x = x;
+  end_.at = at;
   count_from_here();
-  stale_ = !tissue_.move_tip(at_, x_);
+  take_compliance();
 }
 
 void Cut::forget() {
-  x_.setZero();
-  at_ = {};
+  end_ = {};
   direction_ = Vec3::UnitZ();
-  blocked_ = false;
+  blocked_ = ends_leg_ = false;
   stale_ = false;
   count_from_here();
 }
 
 void Cut::count_from_here() {
-  x_start_ = x_;
-  at_start_ = at_;
-  advance_ = 0.0;
+  end_.advance = 0.0;
+  start_ = end_;
+  legs_.clear();
 }
 
 void Cut::begin() {
-  blocked_ = false;
+  blocked_ = ends_leg_ = false;
   count_from_here();
 }
 
 void Cut::march(double advance) {
-  advance = std::min(advance, kReach_mm);
-  const Vec3 target = x_start_ + advance * direction_;
+  const double way = std::max(0.0, std::min(advance, kReach_mm) - start_.advance);
+  const Vec3 target = start_.x + way * direction_;
   MaterialPoint end;
-  blocked_ = false;
-  if (const auto crossing = locator_.first_crossing(x_start_, at_start_.tet, target, end)) {
+  blocked_ = ends_leg_ = false;
+  if (const auto crossing = locator_.first_crossing(start_.x, start_.at.tet, target, end)) {
     blocked_ = true;
     crossing_ = *crossing;
-    x_ = x_start_ + crossing->t * (target - x_start_);
+    end_.x = start_.x + crossing->t * (target - start_.x);
     end.tet = crossing->tet;
-    end.weights = locator_.weights(end.tet, x_);
+    end.weights = locator_.weights(end.tet, end_.x);
   } else {
-    x_ = target;
+    end_.x = target;
   }
-  at_ = end;
-  advance_ = (x_ - x_start_).norm();
-  stale_ = !tissue_.move_tip(at_, x_);
+  end_.at = end;
+  end_.advance = start_.advance + (end_.x - start_.x).norm();
+  take_compliance();
+}
+
+void Cut::march_in_leg(double advance) {
+  const double longest = start_.advance + kLeg_mm;
+  march(std::min(advance, longest));
+  ends_leg_ = advance > longest && longest < kReach_mm && !blocked_;
 }
 
 void Cut::march_before_surface(double advance) {
@@ -63,10 +76,22 @@ void Cut::march_before_surface(double advance) {
   blocked_ = false;
 }
 
+void Cut::begin_leg() {
+  legs_.push_back(start_);
+  start_ = end_;
+  ends_leg_ = false;
+}
+
+void Cut::take_back() {
+  if (!legs_.empty()) start_ = legs_.front();
+  legs_.clear();
+  march(0.0);
+}
+
 void Cut::enter(Index tet) {
-  if (tet != at_.tet) {
-    at_.tet = tet;
-    at_.weights = locator_.weights(tet, x_);
+  if (tet != end_.at.tet) {
+    end_.at.tet = tet;
+    end_.at.weights = locator_.weights(tet, end_.x);
     take_compliance();
   }
   count_from_here();

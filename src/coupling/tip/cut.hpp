@@ -3,28 +3,38 @@
 
 #include "coupling/tissue_response.hpp"
 
+#include <span>
+#include <vector>
+
 namespace stylet {
 
 /// The end of the track while the tip cuts: its place, and the length of cut in this sub-step. The iterations of a
 /// balance move it forward and back; the track itself grows only afterwards (TipPath::commit). All places are
-/// undeformed.
+/// undeformed. A long cut in one sub-step has several legs, each with a direction of its own.
 class Cut {
  public:
-  /// @param locator, tissue outlive the cut
-  Cut(const Locator& locator, TissueResponse& tissue) : locator_(locator), tissue_(tissue) {}
+  /// A place on the way of the cut.
+  struct Place {
+    Vec3 x = Vec3::Zero();  ///< [mm] LPS
+    MaterialPoint at;       ///< its element and weights
+    double advance = 0.0;   ///< [mm] length of cut in this sub-step up to there
+  };
 
-  [[nodiscard]] const Vec3& x() const { return x_; }  ///< [mm] LPS, the end of the track
-  [[nodiscard]] const MaterialPoint& at() const {
-    return at_;
-  }                                                               ///< its element and weights; element −1: the tip is
-                                                                  ///< in no track
-  [[nodiscard]] const Vec3& x_start() const { return x_start_; }  ///< [mm] LPS, the end at the start of the sub-step
-  [[nodiscard]] const MaterialPoint& at_start() const { return at_start_; }
-  [[nodiscard]] const Vec3& direction() const { return direction_; }  ///< LPS, unit vector of the cut
-  [[nodiscard]] double advance() const { return advance_; }           ///< [mm] length of cut in this sub-step
+  /// @param locator, tissue outlive the cut
+  Cut(const Locator& locator, TissueResponse& tissue);
+
+  [[nodiscard]] const Place& end() const { return end_; }            ///< of the track
+  [[nodiscard]] const Vec3& x() const { return end_.x; }             ///< [mm] LPS, the same
+  [[nodiscard]] const MaterialPoint& at() const { return end_.at; }  ///< the same; element −1: the tip is in no track
+  [[nodiscard]] double advance() const { return end_.advance; }      ///< [mm] length of cut in this sub-step
+  [[nodiscard]] const Place& start() const { return start_; }        ///< of the present leg
+  [[nodiscard]] std::span<const Place> legs() const { return legs_; }  ///< starts of those before it
+  [[nodiscard]] const Vec3& direction() const { return direction_; }   ///< LPS, unit vector of the cut
   /// Whether the cut has met a surface in this sub-step; its end is then on the surface.
   [[nodiscard]] bool is_blocked() const { return blocked_; }
   [[nodiscard]] const Crossing& crossing() const { return crossing_; }  ///< the crossing with that surface
+  /// Whether the cut would go on beyond its leg.
+  [[nodiscard]] bool ends_leg() const { return ends_leg_; }
   /// Whether the compliance at the end is missing, so that the compliance of the last place is used.
   [[nodiscard]] bool is_stale() const { return stale_; }
 
@@ -36,14 +46,20 @@ class Cut {
   /// Begins a sub-step: the length of cut is measured from here.
   void begin();
   /// Reads the compliance at the end again, in case it has arrived; the tissue does not move by this.
-  void take_compliance() { stale_ = !tissue_.move_tip(at_, x_); }
+  void take_compliance() { stale_ = !tissue_.move_tip(end_.at, end_.x); }
   /// @param direction LPS, unit vector
   void aim(const Vec3& direction) { direction_ = direction; }
   /// Moves the end to `advance` [mm] beyond its place at the start of the sub-step, or to the first surface before
-  /// that.
+  /// that, but not back beyond the start of the leg.
   void march(double advance);
-  /// The same, but does not move the end if a surface is in the way.
+  /// The same, but at most to the end of the longest leg.
+  void march_in_leg(double advance);
+  /// The same as march(), but does not move the end if a surface is in the way.
   void march_before_surface(double advance);
+  /// Begins another leg at the end of this one.
+  void begin_leg();
+  /// Returns to the start of the first leg.
+  void take_back();
   /// Moves to the element behind the surface at the end; the length of cut is measured from here.
   void enter(Index tet);
   /// Clears is_blocked(), after the caller has handled the surface.
@@ -54,15 +70,13 @@ class Cut {
 
   const Locator& locator_;
   TissueResponse& tissue_;
-  Vec3 x_ = Vec3::Zero();
-  MaterialPoint at_;
-  Vec3 x_start_ = Vec3::Zero();
-  MaterialPoint at_start_;
+  Place start_, end_;
+  std::vector<Place> legs_;
   Vec3 direction_ = Vec3::UnitZ();
-  double advance_ = 0.0;
+  bool ends_leg_ = false;
   bool blocked_ = false;
-  Crossing crossing_;
   bool stale_ = false;
+  Crossing crossing_;
 };
 
 }  // namespace stylet

@@ -104,8 +104,8 @@ bool TipContact::breaks_surface() const {
 
 void TipContact::take_back_cut() {
   if (!touches_) return;
-  if (cut.is_blocked() && state_ == State::stick) state_ = State::cut;
-  if (state_ == State::cut) cut.march(0.0);
+  if ((cut.is_blocked() || cut.ends_leg()) && state_ == State::stick) state_ = State::cut;
+  if (state_ == State::cut) cut.take_back();
 }
 
 void TipContact::hand_over(double share) {

@@ -40,6 +40,8 @@ class TipContact {
   [[nodiscard]] bool is_on_bone() const { return touches_ && state_ == State::stick && ahead.is_bone(); }
   /// The law of cutting at this place, in a sub-step of h seconds.
   [[nodiscard]] CuttingLaw cutting_law(double h) const;
+  /// [mm] Length of cut under the present force.
+  [[nodiscard]] double would_cut(double h) const { return cutting_law(h).way(force.dot(tangent())); }
   /// Asks a program's own law of cutting, if there is one, for the cutting force and viscosity from here on.
   void ask_own_law();
   /// Whether that law gave numbers that cannot be used, so that the built-in law stands in for it.

@@ -149,14 +149,34 @@ void TipPath::cross_surface() {
   events.add(EventKind::region_entered, region);
 }
 
-void TipPath::commit(Step& step) {
+bool TipPath::end_leg(double h, const ContactForces& forces) {
+  tip.set_state(TipContact::State::cut);
+  if (!(tip.would_cut(h) > tip.cut.advance())) {
+    tip.cut.march(tip.cut.advance());
+    return false;
+  }
+  tip.cut.begin_leg();
+  tip.aim(forces);
+  return true;
+}
+
+/// The track grows by a leg of the cut.
+void TipPath::grow_track(const Cut::Place& from, const Cut::Place& to, Step& step) {
+  if (!(to.advance > from.advance)) return;
   Track& track = tracks.now;
-  if (tip.touches() && tip.cut.advance() > 0.0) {
-    const double from_xi = track.end_xi;
-    track.end = tip.cut.x();
-    track.end_at = tip.cut.at();
-    track.end_xi += tip.cut.advance();
-    marks.lay(track, tip.cut.x_start(), from_xi, tip.cut.at_start().tet, step);
+  const double from_xi = track.end_xi;
+  track.end = to.x;
+  track.end_at = to.at;
+  track.end_xi += to.advance - from.advance;
+  marks.lay(track, from.x, from_xi, from.at.tet, step);
+}
+
+void TipPath::commit(Step& step) {
+  if (tip.touches()) {
+    const auto legs = tip.cut.legs();
+    for (std::size_t k = 0; k < legs.size(); ++k)
+      grow_track(legs[k], k + 1 < legs.size() ? legs[k + 1] : tip.cut.start(), step);
+    grow_track(tip.cut.start(), tip.cut.end(), step);
   }
   if (tip.touches() && tip.cut.is_blocked()) {
     tip.cut.unblock();

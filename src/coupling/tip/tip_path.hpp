@@ -46,6 +46,9 @@ class TipPath {
 
   /// Breaks the surface ahead and continues the cut behind it. @param hand_N axial force of the hand at that moment
   void break_surface(double hand_N, Step& step);
+  /// A balance is found with the tip held at the end of a leg. The cut goes on from there along another direction,
+  /// unless the force would not have cut so far; then it has to end within the leg. @return whether it goes on
+  bool end_leg(double h, const ContactForces& forces);
   /// Updates the track after a sub-step's balance: it grows by the length of the cut. A surface that the cut has met
   /// becomes a membrane, bone, or the exit.
   void commit(Step& step);
@@ -74,6 +77,7 @@ class TipPath {
  private:
   bool meet_surface(const Vec3& from, const Vec3& to, Step& step);
   void touch_surface(const Crossing& crossing, const Vec3& x, EventKind kind);
+  void grow_track(const Cut::Place& from, const Cut::Place& to, Step& step);
   void cross_surface();
   void slide_off_where_flat();
   [[nodiscard]] std::optional<Vec3> surface_behind(const Vec3& x) const;

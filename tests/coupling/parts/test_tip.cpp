@@ -46,6 +46,44 @@ TEST(Cut, counts_its_way_from_where_the_sub_step_began) {
   EXPECT_NEAR(cut.x().z(), 5.6, 1e-12);
 }
 
+TEST(Cut, has_legs_each_with_a_direction_of_its_own) {
+  SimpleTissue block;
+  Cut cut(*block.locator, *block.tissue);
+  cut.put(Vec3(1, 2, 5), block.at(Vec3(1, 2, 5)));
+  double before = 0.0;
+  Vec3 end(1, 2, 5);
+  const double whole = 2.5;
+  int legs = 0;
+  for (; legs < 20; ++legs) {
+    const Vec3 along = Vec3(0.1 * legs, -0.05 * legs, 1.0).normalized();
+    cut.aim(along);
+    cut.march_in_leg(whole);
+    end += (cut.advance() - before) * along;
+    EXPECT_NEAR((cut.x() - end).norm(), 0.0, 1e-12);
+    EXPECT_EQ(cut.start().advance, before);
+    if (!cut.ends_leg()) break;
+    before = cut.advance();
+    cut.begin_leg();
+  }
+  EXPECT_GT(legs, 3);
+  EXPECT_NEAR(cut.advance(), whole, 1e-12);
+  cut.march(0.0);
+  EXPECT_NEAR(cut.advance(), before, 1e-12) << "iterates go back to the start of the leg, and no further";
+  cut.take_back();
+  EXPECT_EQ(cut.x(), Vec3(1, 2, 5));
+  EXPECT_EQ(cut.advance(), 0.0);
+}
+
+TEST(Cut, in_a_leg_stops_at_a_surface) {
+  SimpleTissue block;
+  Cut cut(*block.locator, *block.tissue);
+  cut.put(Vec3(1, 2, 19.9), block.at(Vec3(1, 2, 19.9)));
+  cut.aim(Vec3::UnitZ());
+  cut.march_in_leg(3.0);
+  EXPECT_TRUE(cut.is_blocked()) << "the organ begins at 20 mm";
+  EXPECT_FALSE(cut.ends_leg());
+}
+
 TEST(Cut, tells_that_compliances_of_another_place_stand_in) {
   SimpleTissue block;
   Cut cut(*block.locator, *block.tissue);
