@@ -129,6 +129,17 @@ void TipPath::break_surface(double hand_N, Step& step) {
   cross_surface();
 }
 
+/// LPS, unit normal of the face through which the tip passes into the element `behind`; from outside, `here` is that
+/// element itself.
+Vec3 TipPath::inwards_of(Index here, Index behind) const {
+  const auto& neighbours = mesh_.locator->topology().neighbour[static_cast<std::size_t>(behind)];
+  const Index before = here == behind ? -1 : here;
+  for (int face = 0; face < 4; ++face) {
+    if (neighbours[static_cast<std::size_t>(face)] == before) return -mesh_.locator->face_normal(behind, face);
+  }
+  return tangent();
+}
+
 /// Moves to the element behind the surface at the end of the track.
 void TipPath::cross_surface() {
   const Index behind = tip.ahead.behind();
@@ -143,6 +154,7 @@ void TipPath::cross_surface() {
     return;
   }
   const int region = region_of(mesh_, behind);
+  tip.leave_surface(inwards_of(tip.cut.at().tet, behind));
   tip.cut.enter(behind);
   tip.ahead.be_tissue(region, laws(region).cutting_N);
   tip.ask_own_law();

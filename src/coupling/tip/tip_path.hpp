@@ -78,6 +78,7 @@ class TipPath {
   bool meet_surface(const Vec3& from, const Vec3& to, Step& step);
   void touch_surface(const Crossing& crossing, const Vec3& x, EventKind kind);
   void grow_track(const Cut::Place& from, const Cut::Place& to, Step& step);
+  [[nodiscard]] Vec3 inwards_of(Index here, Index behind) const;
   void cross_surface();
   void slide_off_where_flat();
   [[nodiscard]] std::optional<Vec3> surface_behind(const Vec3& x) const;

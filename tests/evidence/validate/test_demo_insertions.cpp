@@ -60,6 +60,31 @@ TEST(DemoInsertions, find_a_balance_in_all_but_a_few_steps) {
 
 /// A needle through the gland's base into the bladder, and a thin one that buckles on the skin: paths on which the
 /// balance once fell.
+// Through hole d5 the tip presses on an oblique part of the capsule with 6 N, and the tissue before it is squeezed
+// beyond the linear model.
+TEST(OddPaths, break_no_surface_again_and_again) {
+  Scenario scenario = measure::demo_scenario();
+  scenario.insertions[0].hole = "d5";
+  const MeshedAnatomy meshed = test::value_of(measure::mesh_demo(scenario.mesh.nodes, {}));
+  const auto model = test::value_of(Model::compile(scenario, meshed.mesh, "the demo"));
+  const PlannedInsertion& plan = model->insertions().front();
+  for (const double dt_s : {1e-3, 2e-3, 4e-3}) {
+    SCOPED_TRACE(std::to_string(1e3 * dt_s) + " ms");
+    Simulation simulation(model);
+    simulation.place(plan);
+    int punctures = 0;
+    double most_N = 0.0;
+    for (long k = 1; k <= std::lround(plan.motion.duration_s() / dt_s); ++k) {
+      simulation.prepare();
+      const Step& step = simulation.step(plan.motion.at(static_cast<double>(k) * dt_s), dt_s);
+      most_N = std::max(most_N, step.hand_force_N.norm());
+      for (const Event& event : simulation.new_events()) punctures += event.kind == EventKind::puncture ? 1 : 0;
+    }
+    EXPECT_EQ(punctures, 2) << "skin and capsule";
+    EXPECT_LT(most_N, 8.0);
+  }
+}
+
 TEST(OddPaths, have_a_balance_in_every_step_with_any_time_step_and_the_same_events) {
   const Scenario demo = measure::demo_scenario();
   MeshOptions options;
