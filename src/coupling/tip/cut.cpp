@@ -29,6 +29,7 @@ void Cut::put(const Vec3& x, const MaterialPoint& at) {
 void Cut::forget() {
   end_ = {};
   direction_ = Vec3::UnitZ();
+  passed_ = {};
   blocked_ = ends_leg_ = false;
   stale_ = false;
   count_from_here();
@@ -88,7 +89,8 @@ void Cut::take_back() {
   march(0.0);
 }
 
-void Cut::enter(Index tet) {
+void Cut::enter(Index tet, const Vec3& inwards, const Vec3& tangent) {
+  passed_ = PassedSurface(end_.x, inwards, direction_, tangent);
   if (tet != end_.at.tet) {
     end_.at.tet = tet;
     end_.at.weights = locator_.weights(tet, end_.x);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "coupling/tip/passed_surface.hpp"
 #include "coupling/tissue_response.hpp"
 
 #include <span>
@@ -47,8 +48,8 @@ class Cut {
   void begin();
   /// Reads the compliance at the end again, in case it has arrived; the tissue does not move by this.
   void take_compliance() { stale_ = !tissue_.move_tip(end_.at, end_.x); }
-  /// @param direction LPS, unit vector
-  void aim(const Vec3& direction) { direction_ = direction; }
+  /// @param direction LPS, of any length; not followed where it leads back to a surface directly behind it
+  void aim(const Vec3& direction) { direction_ = passed_.direction(end_.x, direction); }
   /// Moves the end to `advance` [mm] beyond its place at the start of the sub-step, or to the first surface before
   /// that, but not back beyond the start of the leg.
   void march(double advance);
@@ -61,7 +62,8 @@ class Cut {
   /// Returns to the start of the first leg.
   void take_back();
   /// Moves to the element behind the surface at the end; the length of cut is measured from here.
-  void enter(Index tet);
+  /// @param inwards LPS, unit normal of the surface @param tangent LPS, unit tangent of the needle at its tip
+  void enter(Index tet, const Vec3& inwards, const Vec3& tangent);
   /// Clears is_blocked(), after the caller has handled the surface.
   void unblock() { blocked_ = false; }
 
@@ -77,6 +79,7 @@ class Cut {
   bool blocked_ = false;
   bool stale_ = false;
   Crossing crossing_;
+  PassedSurface passed_;
 };
 
 }  // namespace stylet

@@ -16,9 +16,6 @@ constexpr double kSteepest = 0.5;
 /// Least det(I + ∇u) of the tissue around the tip, and the reciprocal of the most. Below this, its deformation is
 /// beyond the linear model, and the cut ignores it.
 constexpr double kLeastVolume = 0.2;
-/// [mm] Way behind a surface on which the cut does not lead back to it. Raised, a needle that grazes a surface stays
-/// behind it for longer; lowered, one that presses on it with many newtons may break it again and again.
-constexpr double kAway_mm = 1.0;
 /// Softness of a lateral row that is not held, over the tissue's own compliance: the row carries its given force and
 /// nothing else. Raised much further, its equation loses digits.
 constexpr double kNotHeld = 1e6;
@@ -54,7 +51,6 @@ void TipContact::put(const Vec3& x, const MaterialPoint& at, bool touches, State
 
 void TipContact::forget() {
   cut.forget();
-  surface_ = {};
   ahead = {};
   force.setZero();
   history = {};
@@ -98,14 +94,7 @@ void TipContact::aim(const ContactForces& forces) {
   Vec3 d = volume > kLeastVolume && volume < 1.0 / kLeastVolume ? Vec3(F.inverse() * along) : along;
   // Strains beyond the linear model must not turn the cut around.
   if (d.dot(t) < 0.5 * d.norm()) d = along;
-  const bool is_behind = (cut.x() - surface_.x).norm() < kAway_mm;
-  cut.aim(is_behind && d.dot(surface_.inwards) < 0.0 ? surface_.came : Vec3(d.normalized()));
-}
-
-void TipContact::leave_surface(const Vec3& inwards) {
-  const Vec3 t = tangent();
-  const Vec3 came = cut.direction().dot(inwards) > 0.0 ? cut.direction() : t.dot(inwards) > 0.0 ? t : inwards;
-  surface_ = {cut.x(), inwards, came};
+  cut.aim(d);
 }
 
 bool TipContact::breaks_surface() const {

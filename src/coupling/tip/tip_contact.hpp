@@ -64,9 +64,6 @@ class TipContact {
   /// Behind a surface that breaks it is chosen anew: the tissue before the surface may be softer and have been
   /// squeezed.
   void aim(const ContactForces& forces);
-  /// The tip has passed a surface: directly behind it, where a strain beyond the linear model may lead the cut back
-  /// through it, the cut goes on as it came. @param inwards LPS, unit normal of the surface
-  void leave_surface(const Vec3& inwards);
   /// Whether the present force exceeds the strength of the surface ahead. To be called for a balance only: a broken
   /// surface does not heal, and the forces of an iterate are not yet forces on the tissue.
   [[nodiscard]] bool breaks_surface() const;
@@ -85,13 +82,6 @@ class TipContact {
   [[nodiscard]] Vec3 bevel_force() const;
 
  private:
-  /// The last surface that the tip has passed; before the first one there is none.
-  struct Passed {
-    Vec3 x = Vec3::Zero();        ///< [mm] LPS, where
-    Vec3 inwards = Vec3::Zero();  ///< LPS, unit normal
-    Vec3 came = Vec3::UnitZ();    ///< LPS, direction of the cut that passed it
-  };
-
   [[nodiscard]] Vec3 lead_of_bevel(const Vec3& tangent) const;
   [[nodiscard]] Vec3 tangent() const { return needle_.tangent(needle_.length()); }
 
@@ -101,7 +91,6 @@ class TipContact {
   TissueResponse& tissue_;
   State state_ = State::open;
   bool touches_ = false;
-  Passed surface_;
   double lateral_hold_ = 0.0;
   double viscosity_;  ///< [N s/mm] of the law of cutting
   bool refuses_own_law_ = false;

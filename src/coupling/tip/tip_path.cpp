@@ -154,8 +154,7 @@ void TipPath::cross_surface() {
     return;
   }
   const int region = region_of(mesh_, behind);
-  tip.leave_surface(inwards_of(tip.cut.at().tet, behind));
-  tip.cut.enter(behind);
+  tip.cut.enter(behind, inwards_of(tip.cut.at().tet, behind), tangent());
   tip.ahead.be_tissue(region, laws(region).cutting_N);
   tip.ask_own_law();
   events.add(EventKind::region_entered, region);
