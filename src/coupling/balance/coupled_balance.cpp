@@ -389,9 +389,9 @@ bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
   Progress progress;
   progress.snaps = tangent_.is_damped();
   Index border_tet = -1;  // element of the tip when it was last added to the matrix
-  int before_break = 0;   // iterations up to the balance in which a surface broke, or a leg of the cut ended
-  for (int all = 0; all < before_break + kMaxNewton; ++all) {
-    int iteration = all - before_break;
+  int earlier = 0;        // iterations up to the balance in which a surface broke, or a leg of the cut ended
+  for (int all = 0; all < earlier + kMaxNewton; ++all) {
+    int iteration = all - earlier;
     double error = look(h);
     const bool found = iteration > 0 && !progress.changed && error < 1.0;
     if (found && tip.breaks_surface()) {
@@ -399,13 +399,13 @@ bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
           parts_.hand.when_tip_reached(tip.ahead.limit(), tip.history.start, parts_.contacts.own_forces());
       parts_.path.break_surface(hand_N, step);
       tip.aim(parts_.contacts.forces());
-      before_break = all;
+      earlier = all;
       search_.forget();
       iteration = 0;  // the search for the next balance starts here
       error = look(h);
     } else if (found && tip.cut.ends_leg()) {
       if (parts_.path.end_leg(h, parts_.contacts.forces())) {
-        before_break = all;
+        earlier = all;
         search_.forget();
         effort.renew();
         iteration = 0;

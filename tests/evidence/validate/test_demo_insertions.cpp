@@ -58,10 +58,8 @@ TEST(DemoInsertions, find_a_balance_in_all_but_a_few_steps) {
       << unbalanced << " of " << steps << " steps without a balance";
 }
 
-/// A needle through the gland's base into the bladder, and a thin one that buckles on the skin: paths on which the
-/// balance once fell.
-// Through hole d5 the tip presses on an oblique part of the capsule with 6 N, and the tissue before it is squeezed
-// beyond the linear model.
+/// Through hole d5 the tip presses on an oblique part of the capsule with 6 N, and the tissue before it is squeezed
+/// beyond the linear model.
 TEST(OddPaths, break_no_surface_again_and_again) {
   Scenario scenario = measure::demo_scenario();
   scenario.insertions[0].hole = "d5";
@@ -85,6 +83,8 @@ TEST(OddPaths, break_no_surface_again_and_again) {
   }
 }
 
+/// A needle through the gland's base into the bladder, and a thin one that buckles on the skin: paths on which the
+/// balance once fell.
 TEST(OddPaths, have_a_balance_in_every_step_with_any_time_step_and_the_same_events) {
   const Scenario demo = measure::demo_scenario();
   MeshOptions options;
