@@ -20,10 +20,10 @@ void UnbrokenSurface::add(const Simulation& simulation) {
   for (const Event& event : simulation.new_events()) {
     if (event.kind == EventKind::puncture && hardest_)
       broken_.push_back({event.region, event.depth_mm, event.depth_mm - easy_mm_});
-    if (event.kind == EventKind::puncture || event.kind == EventKind::region_entered) forget();
+    if (event.kind == EventKind::puncture || event.kind == EventKind::region_entered) forget(step.base_depth_mm);
     if (event.kind == EventKind::grazed && buckled_) slid_off_mm_ = event.depth_mm;
   }
-  if (step.tip_state == TipState::cutting) forget();
+  if (step.tip_state == TipState::cutting) forget(step.base_depth_mm);
   if (step.tip_state != TipState::pressing) return;
   const auto now = pressed_now(simulation);
   if (!now) return;
@@ -34,7 +34,7 @@ void UnbrokenSurface::add(const Simulation& simulation) {
   hardest_ = now;
 }
 
-std::optional<UnbrokenSurface::Pressed> UnbrokenSurface::pressed_now(const Simulation& simulation) {
+std::optional<UnbrokenSurface::Pressed> UnbrokenSurface::pressed_now(const Simulation& simulation) const {
   const std::vector<TissueForce> forces = simulation.insertion().tissue_forces();
   const auto tip =
       std::find_if(forces.begin(), forces.end(), [](const TissueForce& force) { return force.along.isZero(0.0); });
@@ -58,6 +58,7 @@ std::optional<UnbrokenSurface::Pressed> UnbrokenSurface::pressed_now(const Simul
   const auto name_of = [&](int region) { return mesh.regions[static_cast<std::size_t>(region)]; };
   Pressed pressed{.region = name_of(behind),
                   .past_mm = (step.tip_mm - at_rest).dot(axis),
+                  .way_mm = step.base_depth_mm - cut_to_mm_,
                   .force_N = (tip->force - tip->lasting).dot(axis),  // what has crept is no force on the surface
                   .at_surface = before != behind,
                   .hand_N = step.force_axial_N,
@@ -72,7 +73,8 @@ std::optional<UnbrokenSurface::Pressed> UnbrokenSurface::pressed_now(const Simul
   return pressed;
 }
 
-void UnbrokenSurface::forget() {
+void UnbrokenSurface::forget(double depth_mm) {
+  cut_to_mm_ = depth_mm;
   furthest_.reset();
   hardest_.reset();
   buckled_.reset();
@@ -100,7 +102,9 @@ std::vector<std::string> UnbrokenSurface::warnings() const {
 }
 
 std::optional<std::string> UnbrokenSurface::held() const {
-  const bool pressed = furthest_ && furthest_->past_mm > kFar_mm;
+  // Tissue that the needle has dragged far along while it cut is not held by the tip.
+  const bool pressed =
+      furthest_ && furthest_->past_mm > kFar_mm && (furthest_->at_surface || furthest_->way_mm > kFar_mm);
   const auto text = [&] { return text_of(*furthest_, hardest_->force_N); };
   if (!buckled_) return pressed ? std::optional(text()) : std::nullopt;
   std::string cure;

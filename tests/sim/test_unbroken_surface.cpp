@@ -60,6 +60,23 @@ TEST(UnbrokenSurface, nothing_is_said_of_surfaces_that_break) {
   EXPECT_FALSE(test::contains(warnings_of(box_scenario()), "The tip pressed"));
 }
 
+/// The tip stops wherever its depth is reached, mostly while it presses the tissue that it has dragged along.
+TEST(UnbrokenSurface, nothing_is_said_of_soft_tissue_that_a_needle_drags_along_while_it_cuts_it) {
+  Scenario s = with("body", 0.3);
+  for (const char* region : {"body", "prostate"}) {
+    TissueParameters& p = s.tissue.try_emplace(region, default_tissue(region)).first->second;
+    p.young_kPa = 3.0;
+    p.puncture_N = 0.3;
+    p.cutting_N = 0.6;
+    p.friction_coulomb_N_per_m *= 3.0;
+    p.friction_static_N_per_m *= 3.0;
+  }
+  for (const double depth_mm : {30.0, 34.0, 38.0, 42.0, 46.0}) {
+    s.insertions[0].depth_mm = depth_mm;
+    EXPECT_FALSE(test::contains(warnings_of(s), "did not go on")) << depth_mm << ": " << warnings_of(s);
+  }
+}
+
 /// Euler's load of a needle that the hand clamps and the skin holds: 2.05 π² E I / L².
 TEST(UnbrokenSurface, a_thin_needle_that_bows_out_on_the_skin_is_told_of_with_the_load_under_which_it_buckles) {
   Scenario s = box_scenario();

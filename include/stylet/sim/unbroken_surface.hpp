@@ -15,7 +15,9 @@ namespace stylet {
 /// was at its depth: there time step and mesh decide whether the needle gets behind it.
 class UnbrokenSurface {
  public:
-  /// [mm] Distance of the tip past the rest position of an unbroken surface, above which there is a warning.
+  /// [mm] Distance of the tip past the rest position of an unbroken surface, above which there is a warning. Tissue
+  /// that is not cut holds the tip only if the base has gone that far since the last cut: what was cut before is
+  /// dragged along.
   static constexpr double kFar_mm = 10.0;
   /// Distance from base to tip, as a share of the needle's length, below which a needle counts as buckled: it then bows
   /// out by an eighth of its length.
@@ -31,10 +33,11 @@ class UnbrokenSurface {
   [[nodiscard]] std::vector<std::string> warnings() const;
 
  private:
-  void forget();
+  void forget(double depth_mm);
   struct Pressed {
     std::string region;
-    double past_mm = 0.0;
+    double past_mm = 0.0;     ///< of the tip beyond the rest position of what it presses
+    double way_mm = 0.0;      ///< of the base since the tip has cut, or entered the region
     double force_N = 0.0;     ///< force of the tip, along the needle
     bool at_surface = true;   ///< false: within the region, whose tissue is not cut
     bool by_cutting = false;  ///< the tissue's cutting force holds the tip, not a membrane
@@ -51,7 +54,7 @@ class UnbrokenSurface {
   };
   [[nodiscard]] std::optional<std::string> held() const;
   [[nodiscard]] static std::string text_of(const Pressed& pressed, double most_N);
-  [[nodiscard]] static std::optional<Pressed> pressed_now(const Simulation& simulation);
+  [[nodiscard]] std::optional<Pressed> pressed_now(const Simulation& simulation) const;
 
   std::optional<Pressed> furthest_;    ///< the furthest state of the surface in front of the tip
   std::optional<Pressed> hardest_;     ///< its state with the largest force of the tip
@@ -60,6 +63,7 @@ class UnbrokenSurface {
   double easy_mm_ = 0.0;               ///< base depth up to which the surface would have held with kClose less strength
   std::vector<Broken> broken_;
   double deepest_mm_ = 0.0;  ///< largest base depth
+  double cut_to_mm_ = 0.0;   ///< base depth at which the tip last cut or entered a region
 };
 
 }  // namespace stylet
