@@ -96,9 +96,11 @@ Result<serve::CaseSource> case_of(const fs::path& file, const ServeArguments& ar
     warn_before_start(file.string(), arguments.settings, Work::preparation, console);
     title = scenario->name;
     has_plan = scenario->insertions.empty() && scenario->plan.is_given();
-    if (!scenario->procedure.stabilising.empty()) {
-      console.warn(fmt::format("{}: the live page holds one needle, so the needles of procedure.stabilising stay out.",
-                               file.string()));
+    if (has_plan && !scenario->procedure.stabilising.empty()) {
+      console.warn(
+          fmt::format("{}: the live page carries a plan of seeds out with one needle at a time, so the needles "
+                      "of procedure.stabilising stay out. stylet implant holds them.",
+                      file.string()));
       settings.emplace_back("procedure.stabilising=[]");
     }
   }
@@ -109,13 +111,6 @@ Result<serve::CaseSource> case_of(const fs::path& file, const ServeArguments& ar
         if (has_plan) return load_implant(file, settings, cache, console, progress);
         auto prepared = prepare_model_file(file.string(), settings, progress, &cache);
         if (!prepared) return prepared.error();
-        if (!prepared->model->staying().empty()) {
-          return input_error(
-              file.string(),
-              "the saved model has needles in place (procedure.stabilising), and the live page holds one "
-              "needle",
-              "Give its scenario, or prepare the model with --set procedure.stabilising=[]");
-        }
         warn_if_not_kept(*prepared, console);
         for (const std::string& warning : prepared->warnings()) console.warn(warning);
         return serve::LoadedCase{prepared->model, prepared->notes};

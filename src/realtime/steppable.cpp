@@ -2,6 +2,7 @@
 #include "stylet/realtime/steppable.hpp"
 
 #include "stylet/core/survive.hpp"
+#include "stylet/sim/staying_needles.hpp"
 
 #include <algorithm>
 
@@ -16,16 +17,23 @@ std::span<const TissueForce> tissue_forces(const Snapshot& snapshot, std::span<T
   return out.first(count);
 }
 
-SimulationSteppable::SimulationSteppable(const std::shared_ptr<const Model>& model, std::size_t insertion,
-                                         std::shared_ptr<TissueProbe> probe)
-    : simulation_(model),
+SimulationSteppable::SimulationSteppable(const std::shared_ptr<const Model>& model, std::shared_ptr<TissueProbe> probe)
+    : simulation_(model, needles_of(*model)),
       contacts_(static_cast<std::size_t>(model->coupling().capacity) + 1),
-      forces_(Snapshot::kForces),
-      probe_(std::move(probe)) {
-  const PlannedInsertion& plan = model->insertions()[insertion];
-  simulation_.place(plan);
-  simulation_.prepare();
-  worker_ = std::make_unique<ComplianceWorker>(simulation_.supply(), simulation_.supply_settings());
+      forces_(4 * Snapshot::kForces),
+      probe_(std::move(probe)) {}
+
+Result<std::unique_ptr<SimulationSteppable>> SimulationSteppable::create(const std::shared_ptr<const Model>& model,
+                                                                         std::size_t insertion,
+                                                                         std::shared_ptr<TissueProbe> probe) {
+  std::unique_ptr<SimulationSteppable> made(new SimulationSteppable(model, std::move(probe)));
+  auto remarks = put_in_staying_needles(made->simulation_, {});
+  if (!remarks) return remarks.error();
+  made->remarks_ = *std::move(remarks);
+  made->simulation_.place(model->insertions()[insertion]);
+  made->simulation_.prepare();
+  made->worker_ = std::make_unique<ComplianceWorker>(made->simulation_.supply(), made->simulation_.supply_settings());
+  return made;
 }
 
 Pose SimulationSteppable::base() const noexcept { return simulation_.insertion().needle().base(); }
@@ -48,6 +56,7 @@ void SimulationSteppable::describe(Snapshot& out) noexcept {
   constexpr std::size_t last = Snapshot::kCentreline - 1;
   for (std::size_t k = 0; k <= last; ++k)
     out.centreline[k] = plain(needle.point(needle.length() * static_cast<double>(k) / static_cast<double>(last)));
+  describe_others(out);
   const std::size_t found = simulation_.insertion().contacts(contacts_);
   const std::size_t shown = std::min(found, Snapshot::kContacts);
   for (std::size_t k = 0; k < shown; ++k) {
@@ -68,10 +77,31 @@ void SimulationSteppable::describe(Snapshot& out) noexcept {
   }
   out.force_count = static_cast<int>(kept);
   out.forces_left_out = static_cast<int>(forces - kept);
+  out.forces_left_out_N = 0.0;
+  for (std::size_t k = kept; k < std::min(forces, forces_.size()); ++k)
+    out.forces_left_out_N += forces_[k].force.norm();
   out.region_count = static_cast<int>(
       regions_.now(simulation_.insertion(), out.step.tip_state, std::span(contacts_).first(found), out.regions));
   out.tip_error = tip_.deepest();
   if (probe_) probe_->serve(simulation_);  // after the step's force has been passed on
+}
+
+/// The needles at rest: their shapes, and how many there is no room for.
+void SimulationSteppable::describe_others(Snapshot& out) const noexcept {
+  const Insertion& insertion = simulation_.insertion();
+  out.resting_count = out.resting_left_out = 0;
+  for (int number = 0; number < insertion.needles(); ++number) {
+    if (number == insertion.held()) continue;
+    if (out.resting_count == static_cast<int>(Snapshot::kResting)) {
+      ++out.resting_left_out;
+      continue;
+    }
+    const Needle& needle = insertion.needle(number);
+    Snapshot::RestingShape& shape = out.resting[static_cast<std::size_t>(out.resting_count++)];
+    constexpr std::size_t last = Snapshot::kRestingPoints - 1;
+    for (std::size_t k = 0; k <= last; ++k)
+      shape[k] = plain(needle.point(needle.length() * static_cast<double>(k) / static_cast<double>(last)));
+  }
 }
 
 bool SimulationSteppable::record(Step& out) noexcept {

@@ -43,6 +43,7 @@ std::vector<float> numbers_of(const LiveFrame& f) {
     add(kVisible_mm, f.tip_error->base_depth_mm);
   }
   for (const float x : f.centreline) add(kVisible_mm, x);
+  for (const float x : f.resting) add(kVisible_mm, x);
   for (const ContactSnapshot& c : f.contacts) {
     add(kVisible_mm, c.position[0], c.position[1], c.position[2]);
     add(kForce_N, c.force[0], c.force[1], c.force[2]);

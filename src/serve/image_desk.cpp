@@ -33,7 +33,12 @@ LoopState loop_state(const Snapshot& snapshot) {
   state.time_s = snapshot.step.time_s;
   state.forces.resize(Snapshot::kForces);
   state.forces.resize(tissue_forces(snapshot, state.forces).size());
-  for (const Triple& point : snapshot.centreline) state.needle.centreline_mm.push_back(vec3(point));
+  const auto add = [&state](std::span<const Triple> shape) {
+    std::ranges::transform(shape, std::back_inserter(state.needles_mm.emplace_back()),
+                           [](const Triple& point) { return vec3(point); });
+  };
+  add(snapshot.centreline);
+  for (int k = 0; k < snapshot.resting_count; ++k) add(snapshot.resting[static_cast<std::size_t>(k)]);
   return state;
 }
 
@@ -50,7 +55,7 @@ void ImageDesk::make_picture(ImageMaker& maker, std::variant<std::monostate, Loo
     stage_ = what;
   };
   if (const auto* loop = std::get_if<LoopState>(&state))
-    maker.take(loop->time_s, loop->forces, loop->needle, loop->seeds);
+    maker.take(loop->time_s, loop->forces, loop->needles_mm, loop->seeds);
   if (auto* moment = std::get_if<Moment>(&state)) maker.take(std::move(*moment));
   auto image = maker.make(tell);
   const std::lock_guard lock(mutex_);

@@ -36,8 +36,8 @@ struct ImageSubject {
 struct LoopState {
   double time_s = 0.0;
   std::vector<TissueForce> forces;
-  ShownNeedle needle;
-  std::vector<ShownSeed> seeds;  ///< where they are now
+  std::vector<std::vector<Vec3>> needles_mm;  ///< LPS, centrelines: of the moving needle, and of those at rest
+  std::vector<ShownSeed> seeds;               ///< where they are now
 };
 /// The same without seeds.
 LoopState loop_state(const Snapshot& snapshot);

@@ -148,15 +148,16 @@ void ImageMaker::set(ShownImage shown, const Scenario& tables, bool in_patient) 
   p.tables.fluoroscopy = tables.fluoroscopy;
 }
 
-void ImageMaker::take(double time_s, std::span<const TissueForce> forces, const ShownNeedle& needle,
+void ImageMaker::take(double time_s, std::span<const TissueForce> forces, std::span<const std::vector<Vec3>> needles_mm,
                       const std::vector<ShownSeed>& seeds) {
   Parts& p = *parts_;
   if (!p.patient.mesh) return;
   p.moment.time_s = time_s;
   if (p.motion) p.motion->compute(forces, p.moment);
   const Scenario& scenario = p.patient.scenario;
-  p.moment.needles = {shown_needle(scenario.needle.diameter_mm, scenario.needle.lumen_diameter_mm)};
-  p.moment.needles.front().centreline_mm = needle.centreline_mm;
+  p.moment.needles.assign(needles_mm.size(),
+                          shown_needle(scenario.needle.diameter_mm, scenario.needle.lumen_diameter_mm));
+  for (std::size_t k = 0; k < needles_mm.size(); ++k) p.moment.needles[k].centreline_mm = needles_mm[k];
   p.moment.seeds = seeds;
 }
 

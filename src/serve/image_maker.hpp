@@ -23,7 +23,8 @@ class ImageMaker {
   /// @param in_patient whether pictures get LiveImage::in_patient
   void set(ShownImage shown, const Scenario& tables, bool in_patient);
   /// Takes the state of the loop: the displacement is computed from the forces.
-  void take(double time_s, std::span<const TissueForce> forces, const ShownNeedle& needle,
+  /// @param needles_mm LPS, centrelines
+  void take(double time_s, std::span<const TissueForce> forces, std::span<const std::vector<Vec3>> needles_mm,
             const std::vector<ShownSeed>& seeds);
   void take(Moment moment);
 

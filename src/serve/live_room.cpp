@@ -66,6 +66,9 @@ Result<Reply> LiveRoom::enter(const NeedleStart& start) {
   hand_.give(run_->hand());
   happened_ = {{.kind = "started", .time_s = 0.0, .depth_mm = 0.0, .force_N = 0.0, .region = start.name}};
   reply.show.emplace_back(happened_.front());
+  if (settings_.say) {
+    for (const std::string& remark : run_->remarks()) settings_.say(remark);
+  }
   if (!implant_) return reply;
   run_->record_implant(implant_->state(), implant_->is_score_current());
   set_seeds();

@@ -46,9 +46,10 @@ Result<std::unique_ptr<LiveRun>> LiveRun::start(const OpenModel& open, std::size
   }
   RunnerSettings kept = settings;
   kept.keep_steps = true;
-  auto runner =
-      RealtimeRunner::create(std::make_unique<SimulationSteppable>(open.model, insertion, run->seeds_.probe()),
-                             std::make_unique<SharedDevice>(std::move(device)), kept);
+  auto body = SimulationSteppable::create(open.model, insertion, run->seeds_.probe());
+  if (!body) return body.error();
+  run->remarks_ = (*body)->remarks();
+  auto runner = RealtimeRunner::create(*std::move(body), std::make_unique<SharedDevice>(std::move(device)), kept);
   if (!runner) return runner.error();
   run->runner_ = std::move(*runner);
 
@@ -57,6 +58,7 @@ Result<std::unique_ptr<LiveRun>> LiveRun::start(const OpenModel& open, std::size
   scenario.insertions = {scenario.insertions[insertion]};  // only the insertion that is recorded
   info.scenario_text = to_toml(scenario);
   info.warnings = open.warnings();
+  info.warnings.insert(info.warnings.end(), run->remarks_.begin(), run->remarks_.end());
   run->recording_.begin(folder, info, open.model->mesh(), plan_of_seeds);
   if (auto started = run->runner_->start(); !started) return started.error();
   return run;
@@ -121,10 +123,14 @@ std::shared_ptr<const LiveFrame> LiveRun::picture(bool whole_curve) {
   frame->tilt_anterior_deg = hand.tilt_anterior_deg;
   for (const Triple& point : s.centreline)
     for (const double value : point) frame->centreline.push_back(static_cast<float>(value));
+  for (const Snapshot::RestingShape& shape : std::span(s.resting).first(static_cast<std::size_t>(s.resting_count))) {
+    for (const Triple& point : shape)
+      for (const double value : point) frame->resting.push_back(static_cast<float>(value));
+  }
   frame->tip_error = s.tip_error;
   frame->contacts.assign(s.contacts.begin(), s.contacts.begin() + s.contact_count);
   if (due) view_.compute(forces, seeds_);
-  frame->left_out_N = view_.left_out_N();
+  frame->left_out_N = view_.left_out_N() + s.forces_left_out_N;
   const bool has_moved = view_.has_moved();
   const FrameNews::Verdict verdict = news_.judge(*frame, has_moved || whole_curve, wall_clock_s());
   if (verdict == FrameNews::Verdict::nothing) return nullptr;

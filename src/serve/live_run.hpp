@@ -65,6 +65,8 @@ class LiveRun {
   void stop_recording(const std::string& why) { recording_.stop(why); }
   [[nodiscard]] const std::string& recording_problem() const { return recording_.problem(); }
   [[nodiscard]] double time_s() const { return time_s_; }
+  /// Sentences about the way in of the needles that stay.
+  [[nodiscard]] const std::vector<std::string>& remarks() const { return remarks_; }
   /// Regions that contained the needle in the last picture, the region of the tip first.
   [[nodiscard]] std::vector<std::string> inside() const;
 
@@ -82,7 +84,8 @@ class LiveRun {
   TissueView view_;
   LiveCurve curve_;
   FrameNews news_;
-  bool seen_ = false;                    ///< a snapshot has been fetched
+  bool seen_ = false;  ///< a snapshot has been fetched
+  std::vector<std::string> remarks_;
   std::vector<TissueForce> force_room_;  ///< buffer for forces
   std::vector<Step> step_room_;          ///< buffer for steps
   double time_s_ = 0.0;

@@ -167,6 +167,7 @@ MadeScene make_scene(const TetMesh& mesh, const std::vector<int>& targets, const
         {"centre_mm", centre},
         {"z_mm", lowest - scenario.grid.distance_mm}}},
       {"insertions", planned},
+      {"stabilising", scenario.procedure.stabilising},
       {"needle",
        {{"length_mm", scenario.needle.length_mm},
         {"diameter_mm", scenario.needle.diameter_mm},

@@ -128,7 +128,8 @@ Bytes encode(const Scene& scene, std::uint32_t number) {
 Bytes encode(const LiveFrame& f, std::span<const Step> curve, bool whole_curve, std::uint32_t number, bool coarse) {
   const auto eight_bits = coarse ? std::make_optional<CoarseDisplacement>(f) : std::nullopt;
   Writer out(Kind::frame, number,
-             256 + 4 * f.centreline.size() + 32 * f.contacts.size() + 32 * curve.size() + 2 * f.displacement.size());
+             256 + 4 * (f.centreline.size() + f.resting.size()) + 32 * f.contacts.size() + 32 * curve.size() +
+                 2 * f.displacement.size());
   out.put(f.time_s);
   std::uint32_t bits = f.bits & ~static_cast<std::uint32_t>(LiveFrame::whole_curve);
   if (!f.displacement.empty()) bits |= LiveFrame::displaced;
@@ -149,8 +150,10 @@ Bytes encode(const LiveFrame& f, std::span<const Step> curve, bool whole_curve, 
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const TipError tip = f.tip_error.value_or(TipError{Vec3::Constant(kNone), kNone});
   out.put_floats(tip.mm.x(), tip.mm.y(), tip.mm.z(), tip.base_depth_mm);
-  out.put_counts({f.centreline.size() / 3, f.contacts.size(), curve.size(), f.displacement.size() / 3});
+  out.put_counts({f.centreline.size() / 3, f.contacts.size(), curve.size(), f.displacement.size() / 3,
+                  f.resting.size() / (3 * Snapshot::kRestingPoints)});
   out.put_all(std::span<const float>(f.centreline));
+  out.put_all(std::span<const float>(f.resting));
   for (const ContactSnapshot& c : f.contacts) {
     out.put_floats(c.position[0], c.position[1], c.position[2], c.force[0], c.force[1], c.force[2], c.s);
     out.put((c.sticking ? 1U : 0U) | (c.tip ? 2U : 0U));

@@ -20,8 +20,8 @@
 /// Encodes and decodes the messages of docs/live_protocol.md.
 namespace stylet::serve::wire {
 
-inline constexpr int kProtocol = 3;  ///< version of the protocol
-inline constexpr const char* kSubprotocol = "stylet-live-3";
+inline constexpr int kProtocol = 4;  ///< version of the protocol
+inline constexpr const char* kSubprotocol = "stylet-live-4";
 inline constexpr std::size_t kLongestMessage = 1024;  ///< [bytes] longest message of a page
 
 enum class Kind : std::uint32_t {

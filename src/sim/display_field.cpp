@@ -37,8 +37,10 @@ void DisplayField::find_zone(double reach_mm) {
   const ComplianceStore& store = *model_->store();
   slot_.assign(static_cast<std::size_t>(tissue.displacement_nodes()), -1);
   std::vector<std::array<Vec3, 2>> ways;
-  for (const PlannedInsertion& plan : model_->insertions())
-    ways.push_back({plan.entry, plan.entry + (plan.depth_mm + kShownBeyond_mm) * plan.direction});
+  for (const auto* plans : {&model_->insertions(), &model_->staying()}) {
+    for (const PlannedInsertion& plan : *plans)
+      ways.push_back({plan.entry, plan.entry + (plan.depth_mm + kShownBeyond_mm) * plan.direction});
+  }
   const Corridor near = find_corridor(tissue.mesh(), ways, reach_mm, std::numeric_limits<int>::max());
   for (const Index tet : near.elements) {
     for (const Index node : tissue.nodes_of(tet)) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/sim/prediction.hpp"
 
+#include "base_steps.hpp"
 #include "needles_in_place.hpp"
 #include "stylet/core/flush_denormals.hpp"
 #include "stylet/sim/gland_watch.hpp"

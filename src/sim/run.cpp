@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/sim/run.hpp"
 
+#include "base_steps.hpp"
 #include "needles_in_place.hpp"
 #include "stylet/core/flush_denormals.hpp"
 #include "stylet/core/version.hpp"
@@ -78,7 +79,6 @@ class Runner {
 
  private:
   Result<> put_in_place() {
-    const FlushDenormals flush;  // as the insertions
     auto remarks = put_in_staying_needles(simulation_, progress_);
     if (!remarks) return remarks.error();
     remarks_in_place_ = *std::move(remarks);

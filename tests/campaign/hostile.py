@@ -56,7 +56,7 @@ class Attacks:
         key = base64.b64encode(os.urandom(16)).decode()
         connection.sendall(self.request("/live",
                                         "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
-                                        f"Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Protocol: stylet-live-3\r\n"))
+                                        f"Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Protocol: stylet-live-4\r\n"))
         return connection
 
     def http_noise(self, random):

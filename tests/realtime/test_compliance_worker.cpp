@@ -61,7 +61,9 @@ TEST(ComplianceWorker, brings_what_prepare_would_have) {
 }
 
 TEST(ComplianceWorker, steps_beside_it_are_sound_or_flagged_and_it_catches_up) {
-  SimulationSteppable body(narrow());
+  const auto made_body = SimulationSteppable::create(narrow());
+  ASSERT_TRUE(made_body.ok());
+  SimulationSteppable& body = **made_body;
   place_beside(body.simulation());
   for (int k = 0; k < kSteps; ++k) {
     if (k < kSteps / 3) body.simulation().prepare();              // waits for the worker, so that the needle can enter
@@ -86,8 +88,12 @@ TEST(ComplianceWorker, steps_beside_it_are_sound_or_flagged_and_it_catches_up) {
 
 TEST(ComplianceWorker, simulations_of_one_model_grow_apart_from_each_other) {
   const Index before = narrow()->store()->stored_nodes();
-  SimulationSteppable one(narrow());
-  SimulationSteppable other(narrow());
+  const auto made_one = SimulationSteppable::create(narrow());
+  ASSERT_TRUE(made_one.ok());
+  SimulationSteppable& one = **made_one;
+  const auto made_other = SimulationSteppable::create(narrow());
+  ASSERT_TRUE(made_other.ok());
+  SimulationSteppable& other = **made_other;
   place_beside(one.simulation());
   std::thread thread([&] {
     for (int k = 0; k < kSteps; ++k) one.step(beside(-1.0 + k * kStep_mm), kStep_s);

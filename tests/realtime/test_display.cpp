@@ -34,13 +34,14 @@ std::vector<Index> all_nodes() {
 TEST(Display, shows_a_running_simulation_from_other_threads) {
   const auto field = DisplayField::prepare(half_a_second());
   ASSERT_TRUE(field.ok());
-  auto body = std::make_unique<SimulationSteppable>(half_a_second());
-  SimulationSteppable* simulation = body.get();
+  auto body = SimulationSteppable::create(half_a_second());
+  ASSERT_TRUE(body.ok());
+  SimulationSteppable* simulation = body->get();
   RunnerSettings settings = plain_settings();
   settings.period_s = 4e-3;
   settings.late_after_s = 0.5;
   auto runner = RealtimeRunner::create(
-      std::move(body), std::make_unique<ScriptedDevice>(half_a_second()->insertions()[0].motion), settings);
+      *std::move(body), std::make_unique<ScriptedDevice>(half_a_second()->insertions()[0].motion), settings);
   ASSERT_TRUE(runner.ok());
 
   // One display reads snapshots; another one in a second thread uses the same field for another picture.

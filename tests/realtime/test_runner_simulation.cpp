@@ -39,9 +39,10 @@ struct BoxRun {
   std::unique_ptr<RealtimeRunner> runner;
 
   explicit BoxRun(const RunnerSettings& settings) {
-    auto s = std::make_unique<SimulationSteppable>(one_second());
-    simulation = s.get();
-    auto b = std::make_unique<CountingBody>(std::move(s));
+    auto s = SimulationSteppable::create(one_second());
+    if (!s) throw std::runtime_error(s.error().message());
+    simulation = s->get();
+    auto b = std::make_unique<CountingBody>(*std::move(s));
     auto d = std::make_unique<CountingDevice>(std::make_unique<ScriptedDevice>(one_second()->insertions()[0].motion));
     body = b.get();
     device = d.get();
@@ -115,7 +116,9 @@ TEST(RealtimeRunner, neither_thread_allocates_from_its_first_turn_to_its_last) {
 }
 
 TEST(SimulationSteppable, shows_what_the_simulation_says) {
-  SimulationSteppable body(one_second());
+  const auto made_body = SimulationSteppable::create(one_second());
+  ASSERT_TRUE(made_body.ok());
+  SimulationSteppable& body = **made_body;
   const BaseMotion& motion = one_second()->insertions()[0].motion;
   Simulation& simulation = body.simulation();
   Snapshot shown;
@@ -147,7 +150,9 @@ TEST(SimulationSteppable, shows_what_the_simulation_says) {
 
 TEST(SimulationSteppable, has_the_tip_error_that_a_report_has_and_keeps_it_while_the_needle_is_drawn_back) {
   const std::shared_ptr<const Model> model = one_second();
-  SimulationSteppable body(model);
+  const auto made_body = SimulationSteppable::create(model);
+  ASSERT_TRUE(made_body.ok());
+  SimulationSteppable& body = **made_body;
   const PlannedInsertion& plan = model->insertions()[0];
   const BaseSteps motion = planned_steps(*model, plan);
   const long deepest = deepest_step(*model, plan, motion);
@@ -179,6 +184,42 @@ TEST(SimulationSteppable, has_the_tip_error_that_a_report_has_and_keeps_it_while
   ASSERT_TRUE(finished.summary.tip_error_mm && at_deepest);
   EXPECT_LT((at_deepest->mm - *finished.summary.tip_error_mm).norm(), 1e-9);
   EXPECT_LT(at_deepest->mm.z(), -0.1) << "the tissue gave way";
+}
+
+TEST(SimulationSteppable, begins_with_the_needles_that_stay_and_gives_the_forces_of_a_run_beside_them) {
+  Scenario s = box_scenario();
+  s.insertions[0].depth_mm = 20.0;
+  s.procedure.stabilising = {"C3", "E4"};
+  const std::shared_ptr<const Model> model = compiled(s);
+  const auto made = SimulationSteppable::create(model);
+  ASSERT_TRUE(made.ok());
+  SimulationSteppable& body = **made;
+  const auto shown = std::make_unique<Snapshot>();
+  body.describe(*shown);
+  ASSERT_EQ(shown->resting_count, 2);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const PlannedInsertion& stays = model->staying()[k];
+    const Vec3 tip = vec3(shown->resting[k].back());
+    EXPECT_LT((tip - stays.entry - stays.depth_mm * stays.direction).norm(), 3.0) << "it has bent a little";
+    const Needle& needle = body.simulation().insertion().needle(static_cast<int>(k));
+    EXPECT_EQ(tip, needle.point(needle.length()));
+  }
+  EXPECT_GT(shown->force_count, 6) << "they press the tissue before the needle comes";
+
+  const Finished finished(model);
+  Scenario alone = s;
+  alone.procedure.stabilising.clear();
+  const Finished free(compiled(alone));
+  const BaseSteps motion = planned_steps(*model, model->insertions()[0]);
+  double beside = 0.0;
+  for (long k = 1; k <= motion.count; ++k) {
+    body.step(motion.base(k), motion.dt_s(k));
+    const auto at = static_cast<std::size_t>(k - 1);
+    const double force_N = body.simulation().last_step().force_axial_N;
+    ASSERT_NEAR(force_N, finished.kept.steps[at].force_axial_N, 1e-9) << "step " << k;
+    beside = std::max(beside, std::abs(force_N - free.kept.steps[at].force_axial_N));
+  }
+  EXPECT_GT(beside, 0.01) << "they are felt";
 }
 
 TEST(ScriptedDevice, follows_simulated_time_and_stamps_with_the_clock) {

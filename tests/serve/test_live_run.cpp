@@ -25,8 +25,8 @@ struct Paused {
   std::shared_ptr<const DisplayField> field;
   std::unique_ptr<LiveRun> run;
 
-  explicit Paused(bool with_field) {
-    open.model = compiled(hole_scenario());
+  explicit Paused(bool with_field, const Scenario& scenario = hole_scenario()) {
+    open.model = compiled(scenario);
     open.points.nodes.resize(static_cast<std::size_t>(open.model->mesh().node_count()));
     std::iota(open.points.nodes.begin(), open.points.nodes.end(), Index{0});
     field = value_of(DisplayField::prepare(open.model));
@@ -99,4 +99,16 @@ TEST(LiveRun, a_picture_has_the_tip_error_of_the_loop) {
   EXPECT_EQ(frame->tip_error->mm, error->mm);
   EXPECT_EQ(frame->tip_error->base_depth_mm, frame->step.base_depth_mm) << "the needle is deepest";
   EXPECT_LT(error->mm.z(), -0.05) << "the tissue before the tip has given way";
+}
+
+TEST(LiveRun, a_picture_has_the_needles_that_stay_and_what_they_move) {
+  Scenario scenario = hole_scenario();
+  scenario.procedure.stabilising = {"C3"};
+  const Paused paused(true, scenario);
+  const auto frame = paused.next(true);
+  ASSERT_TRUE(frame);
+  ASSERT_EQ(frame->resting.size(), 3 * Snapshot::kRestingPoints);
+  const PlannedInsertion& stays = paused.open.model->staying().front();
+  EXPECT_NEAR(frame->resting.back(), stays.entry.z() + stays.depth_mm, 3.0);
+  EXPECT_EQ(frame->left_out_N, 0.0) << "the displacement field covers the needle that stays";
 }

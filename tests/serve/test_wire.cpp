@@ -85,6 +85,7 @@ TEST(Wire, a_frame_has_everything_where_the_protocol_says) {
   f.left_out_N = 0.75;
   f.tip_error = TipError{{-0.5, 0.25, -3.5}, 66.5};
   f.centreline = {1, 1, 1, 2, 2, 2};
+  f.resting.assign(3 * Snapshot::kRestingPoints, 5);
   f.contacts.push_back({{1, 2, 3}, {4, 5, 6}, 7.0, true, true});
   Eigen::Matrix3Xf u(3, 2);
   u << 0.5F, -1.F, 0.F, 2.F, 0.001F, 0.F;
@@ -112,8 +113,9 @@ TEST(Wire, a_frame_has_everything_where_the_protocol_says) {
     EXPECT_EQ(r.number(), value);
   const float unit = r.number();
   for (const float value : {-0.5F, 0.25F, -3.5F, 66.5F}) EXPECT_EQ(r.number(), value);
-  for (const std::uint32_t value : {2U, 1U, 1U, 2U}) EXPECT_EQ(r.count(), value);
+  for (const std::uint32_t value : {2U, 1U, 1U, 2U, 1U}) EXPECT_EQ(r.count(), value);
   for (const float value : {1.F, 1.F, 1.F, 2.F, 2.F, 2.F}) EXPECT_EQ(r.number(), value);
+  for (int k = 0; k < 51; ++k) EXPECT_EQ(r.number(), 5.F);
   for (const float value : {1.F, 2.F, 3.F, 4.F, 5.F, 6.F, 7.F}) EXPECT_EQ(r.number(), value);
   EXPECT_EQ(r.count(), 3u);
   for (const float value : {-0.25F, 30.F, 1.25F, 0.5F, 0.25F, 60.F, 1.F, 1.F}) EXPECT_EQ(r.number(), value);
@@ -127,7 +129,7 @@ TEST(Wire, a_tip_that_is_not_in_the_tissue_has_an_error_that_is_not_a_number) {
   const wire::Bytes bytes = wire::encode(LiveFrame{}, {}, false, 1);
   Reader r{bytes, 132};  // docs/live_protocol.md
   for (int k = 0; k < 4; ++k) EXPECT_TRUE(std::isnan(r.number()));
-  for (int k = 0; k < 4; ++k) EXPECT_EQ(r.count(), 0U);
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(r.count(), 0U);
   EXPECT_TRUE(r.at_end());
 }
 

@@ -3,7 +3,7 @@
 import { SAMPLE_WORDS, type Frame } from 'live/src/wire';
 import type { MadeUpPatient } from './made_up_patient';
 
-const FRAME_HEADER = 164;
+const FRAME_HEADER = 168;
 
 export function encodeText(kind: number, what: unknown): ArrayBuffer {
   const text = new TextEncoder().encode(JSON.stringify(what));
@@ -28,8 +28,9 @@ export function encodeScene({ text, points, corners }: MadeUpPatient): ArrayBuff
 
 /** `contacts` (4 × contacts) as the page has them decoded. */
 export function encodeFrame(f: Frame): ArrayBuffer {
-  const [p, c, s, n] = [f.line.length / 3, f.contacts.length / 4, f.samples.length / SAMPLE_WORDS, f.displacement.length / 3];
-  const buffer = new ArrayBuffer(FRAME_HEADER + 12 * p + 32 * c + 32 * s + 6 * n);
+  const [p, c, s, n, q] = [f.line.length / 3, f.contacts.length / 4, f.samples.length / SAMPLE_WORDS, f.displacement.length / 3, f.resting.length];
+  const atContacts = FRAME_HEADER + 12 * p + 12 * 17 * q;
+  const buffer = new ArrayBuffer(atContacts + 32 * c + 32 * s + 6 * n);
   const view = new DataView(buffer);
   view.setUint32(0, 2, true);
   view.setFloat64(8, f.time, true);
@@ -37,17 +38,18 @@ export function encodeFrame(f: Frame): ArrayBuffer {
   [bits, f.flags, f.tipState, f.sticking, f.iterations, f.steps, f.missed].forEach((v, i) => view.setUint32(16 + 4 * i, v, true));
   const floats = [f.depth, ...f.force, ...f.torque, ...f.tip, ...f.base, ...f.orientation, ...f.hand, f.hidden, f.unit, ...f.tipError, f.tipErrorDepth];
   floats.forEach((v, i) => view.setFloat32(44 + 4 * i, v, true));
-  [p, c, s, n].forEach((v, i) => view.setUint32(148 + 4 * i, v, true));
+  [p, c, s, n, q].forEach((v, i) => view.setUint32(148 + 4 * i, v, true));
   new Float32Array(buffer, FRAME_HEADER, 3 * p).set(f.line);
+  f.resting.forEach((line, i) => new Float32Array(buffer, FRAME_HEADER + 12 * (p + 17 * i), line.length).set(line));
   for (let i = 0; i < c; i++) {
-    const at = FRAME_HEADER + 12 * p + 32 * i;
+    const at = atContacts + 32 * i;
     for (let k = 0; k < 3; k++) {
       view.setFloat32(at + 4 * k, f.contacts[4 * i + k], true);
       view.setFloat32(at + 12 + 4 * k, f.contactForces[3 * i + k], true);
     }
     view.setUint32(at + 28, f.contacts[4 * i + 3], true);
   }
-  new Float32Array(buffer, FRAME_HEADER + 12 * p + 32 * c, 8 * s).set(f.samples);
-  new Int16Array(buffer, FRAME_HEADER + 12 * p + 32 * c + 32 * s, 3 * n).set(f.displacement);
+  new Float32Array(buffer, atContacts + 32 * c, 8 * s).set(f.samples);
+  new Int16Array(buffer, atContacts + 32 * c + 32 * s, 3 * n).set(f.displacement);
   return buffer;
 }

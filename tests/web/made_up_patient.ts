@@ -39,6 +39,7 @@ export function makePatient(): MadeUpPatient {
       regions, patches,
       template: { pitch_mm: 5, columns, rows, centre_mm: [0, 0], z_mm: -62 },
       insertions: [{ name: 'hole e3.5', hole: 'e3.5', entry_mm: [15, 5, SKIN_Z], direction: [0, 0, 1], depth_mm: 66, speed_mm_per_s: 20 }],
+      stabilising: [],
       needle: { length_mm: 200, diameter_mm: 1.27, bevel_deg: 0, model: 'beam' },
       limits: { depth_mm: 110, behind_mm: 30, speed_mm_per_s: 200, tilt_deg: 10 },
       mesh: { nodes: points.length / 3, tets: 0 }, dt_ms: 1, warnings: [],

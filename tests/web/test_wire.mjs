@@ -11,7 +11,7 @@ function frame() {
   return {
     time: 12.345678901, paused: true, replayed: false, trusted: true, shown: true, whole: true, approximate: true, unfelt: false, flags: 6, tipState: 2, sticking: 3,
     iterations: 4, steps: 70000, missed: 5, depth: 31.5, force: f32(1, 2, 3), torque: f32(4, 5, 6), tip: f32(7, 8, 9), base: f32(10, 11, 12),
-    orientation: f32(1, 0, 0, 0.5), hand: f32(15, -2, 3), hidden: 0.25, unit: 0.5, tipError: f32(-0.5, 0.25, -3.5), tipErrorDepth: 31.5, line: f32(0, 0, 0, 0, 0, 100),
+    orientation: f32(1, 0, 0, 0.5), hand: f32(15, -2, 3), hidden: 0.25, unit: 0.5, tipError: f32(-0.5, 0.25, -3.5), tipErrorDepth: 31.5, line: f32(0, 0, 0, 0, 0, 100), resting: [1, 2].map((at) => new Float32Array(51).fill(at)),
     contacts: f32(1, 2, 3, 0, 4, 5, 6, 1, 7, 8, 9, 2), contactForces: f32(0, 0, 1, 0, 0, 2, 0, 0, 3),
     samples: f32(-0.001, 31, 1, 2, 3, 40, 2, 0, 0, 31.5, 1.5, 2, 3, 41, 2, 0), displacement: Int16Array.of(1, -2, 3),
   };
@@ -46,7 +46,7 @@ test('every shortened frame is refused, none is read beyond its end', () => {
 });
 
 test('counts that the message cannot hold are refused', () => {
-  for (const offset of [148, 152, 156, 160]) {
+  for (const offset of [148, 152, 156, 160, 164]) {
     const buffer = encodeFrame(frame());
     new DataView(buffer).setUint32(offset, 0xffffffff, true);
     assert.throws(() => decode(buffer), WireError);

@@ -16,8 +16,8 @@ export class NeedleMesh {
   private readonly across = new THREE.Vector3();
   private readonly side = new THREE.Vector3();
 
-  constructor(private readonly diameter: number) {
-    const material = new THREE.MeshStandardMaterial({ color: '#2d333d', roughness: 0.35, metalness: 0.5, side: THREE.DoubleSide });
+  constructor(private readonly diameter: number, color = '#2d333d') {
+    const material = new THREE.MeshStandardMaterial({ color, roughness: 0.35, metalness: 0.5, side: THREE.DoubleSide });
     this.object = new THREE.Mesh(new THREE.BufferGeometry(), material);
     this.object.renderOrder = -2;
     this.object.frustumCulled = false;

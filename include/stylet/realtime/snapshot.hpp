@@ -46,18 +46,25 @@ struct ForceSnapshot {
 struct Snapshot {
   static constexpr std::size_t kCentreline = 65;
   static constexpr std::size_t kContacts = 128;
-  /// More than contacts, since lasting forces remain at places that the needle has left.
-  static constexpr std::size_t kForces = 256;
+  /// More than contacts, since lasting forces remain at places that the needle has left, and other needles may rest.
+  static constexpr std::size_t kForces = 512;
   static constexpr std::size_t kRegions = 16;
+  static constexpr std::size_t kResting = 16;
+  static constexpr std::size_t kRestingPoints = 17;
+  using RestingShape = std::array<Triple, kRestingPoints>;
 
   Step step;             ///< the last step; its time_s counts from the creation of the runner
   double clock_s = 0.0;  ///< end of the step on the runner's clock, which starts with the creation of the runner
   std::array<Triple, kCentreline> centreline{};       ///< [mm] LPS, base to tip, evenly spaced
+  int resting_count = 0;                              ///< used entries of `resting`
+  int resting_left_out = 0;                           ///< needles at rest that did not fit
+  std::array<RestingShape, kResting> resting{};       ///< [mm] LPS, needles at rest, base to tip, evenly spaced
   int contact_count = 0;                              ///< used entries of `contacts`
   int contacts_left_out = 0;                          ///< contacts that did not fit
   std::array<ContactSnapshot, kContacts> contacts{};  ///< the tip first, if it touches tissue
   int force_count = 0;                                ///< used entries of `forces`
   int forces_left_out = 0;                            ///< forces that did not fit
+  double forces_left_out_N = 0.0;                     ///< sum of their magnitudes
   std::array<ForceSnapshot, kForces> forces{};        ///< all forces that displace the tissue, for a DisplayField
   int region_count = 0;                               ///< used entries of `regions`
   std::array<std::int16_t, kRegions> regions{};       ///< regions of the mesh in which the needle is; the tip's first

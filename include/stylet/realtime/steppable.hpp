@@ -10,6 +10,8 @@
 
 #include <memory>
 #include <span>
+#include <string>
+#include <vector>
 
 namespace stylet {
 
@@ -47,14 +49,18 @@ std::span<const TissueForce> tissue_forces(const Snapshot& snapshot, std::span<T
 /// outruns the worker, steps are flagged (Step::compliance_missing).
 class SimulationSteppable final : public Steppable {
  public:
-  /// Places the needle at the start of one of the model's insertions, and makes the compliance for the first steps
-  /// available, solving for it if necessary.
-  /// @param probe is answered after each step; may be null
-  explicit SimulationSteppable(const std::shared_ptr<const Model>& model, std::size_t insertion = 0,
-                               std::shared_ptr<TissueProbe> probe = nullptr);
+  /// Puts the needles that stay (Model::staying()) into the tissue, which takes as long as their steps, places the
+  /// needle at the start of one of the model's insertions, and makes the compliance for the first steps available,
+  /// solving for it if necessary.
+  /// @param probe is answered after each step; may be null. Errors: those of put_in_staying_needles()
+  static Result<std::unique_ptr<SimulationSteppable>> create(const std::shared_ptr<const Model>& model,
+                                                             std::size_t insertion = 0,
+                                                             std::shared_ptr<TissueProbe> probe = nullptr);
 
   /// The simulation; must not be used while the loop runs.
   [[nodiscard]] Simulation& simulation() { return simulation_; }
+  /// Sentences about the way in of the needles that stay.
+  [[nodiscard]] const std::vector<std::string>& remarks() const { return remarks_; }
 
   [[nodiscard]] Pose base() const noexcept override;
   StepOutcome step(const Pose& base, double dt) noexcept override;
@@ -63,7 +69,12 @@ class SimulationSteppable final : public Steppable {
   bool record(Step& out) noexcept override;
 
  private:
+  SimulationSteppable(const std::shared_ptr<const Model>& model, std::shared_ptr<TissueProbe> probe);
+
+  void describe_others(Snapshot& out) const noexcept;
+
   Simulation simulation_;
+  std::vector<std::string> remarks_;
   std::unique_ptr<ComplianceWorker> worker_;
   std::vector<ContactState> contacts_;  ///< scratch
   std::vector<TissueForce> forces_;     ///< scratch

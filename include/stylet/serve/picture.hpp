@@ -32,6 +32,9 @@ struct LiveFrame {
   double left_out_N = 0.0;            ///< the larger of two forces: whose far field, and whose near field, is not shown
   std::optional<TipError> tip_error;  ///< empty in a replay, because it is not recorded
   std::vector<float> centreline;      ///< (3 p) [mm] LPS, base to tip
+  /// (3 × Snapshot::kRestingPoints × needles) [mm] LPS, needles that rest in the tissue, each base to tip; none in a
+  /// replay, because they are not recorded.
+  std::vector<float> resting;
   std::vector<ContactSnapshot> contacts;
   std::vector<Step> curve;                 ///< steps since the last frame; with the bit whole_curve, all steps
   double unit_mm = 0.0;                    ///< length that 1 in `displacement` stands for

@@ -18,6 +18,7 @@ export interface SceneText {
   patches: Patch[];
   template: Template | null;
   insertions: Insertion[];
+  stabilising: string[];  // holes in which needles stay
   needle: { length_mm: number; diameter_mm: number; bevel_deg: number; model: string };
   limits: { depth_mm: number; behind_mm: number; speed_mm_per_s: number; tilt_deg: number };
   mesh: { nodes: number; tets: number };

@@ -7,8 +7,8 @@ import type { LiveImage, ImageText, ShownImage } from './imaging/image';
 import type { Dose, Implant, Plan, Seeds } from './implant/implant';
 import type { Scene, SceneText } from './scene';
 
-export const SUBPROTOCOL = 'stylet-live-3';
-export const PROTOCOL = 3;
+export const SUBPROTOCOL = 'stylet-live-4';
+export const PROTOCOL = 4;
 
 export const enum Kind { scene = 1, frame = 2, status = 3, event = 4, notice = 5, map = 6, plan = 7, implant = 8, seeds = 9, dose = 10, image = 11, hand = 16, command = 17, seen = 18 }
 export const TIP_STATES = ['in air', 'pressing', 'cutting', 'in its track', 'on bone', 'through'] as const;
@@ -42,6 +42,7 @@ export interface Frame {
   tipError: Float32Array;    // [mm] LPS, tip error at the deepest step so far; NaN: the tip is not in the tissue
   tipErrorDepth: number;     // [mm] base depth in that step
   line: Float32Array;        // (3 × points) base to tip
+  resting: Float32Array[];   // (needles at rest) of (3 × points) base to tip
   contacts: Float32Array;    // (4 × contacts) x y z, state 0 slipping, 1 sticking, 2 tip
   contactForces: Float32Array;  // (3 × contacts) forces on the tissue
   samples: Float32Array;     // (8 × steps) times are relative to the frame's
@@ -81,10 +82,11 @@ export class WireError extends Error {}
 const COMPLIANCE_MISSING = 1 << 2;  // as in Step::Flag
 const NO_CONTACT_INSIDE = 1 << 6;
 const HEADER = 8;
-const FRAME_HEADER = 164;
+const FRAME_HEADER = 168;
 const DOSE_HEADER = HEADER + 32;
 const IMAGE_HEADER = HEADER + 12;
-const LIMITS = { points: 4096, contacts: 8192, samples: 4096, nodes: 4_000_000, triangles: 8_000_000, dose: 1_000_000, pixels: 16_000_000 };
+const RESTING_POINTS = 17;  // of each needle at rest
+const LIMITS = { points: 4096, resting: 64, contacts: 8192, samples: 4096, nodes: 4_000_000, triangles: 8_000_000, dose: 1_000_000, pixels: 16_000_000 };
 
 function must(holds: boolean, what: string): asserts holds {
   if (!holds) throw new WireError(what);
@@ -123,9 +125,11 @@ function decodeFrame(buffer: ArrayBuffer, view: DataView): Frame {
   const u = (word: number) => view.getUint32(16 + 4 * word, true);
   const floats = (offset: number, count: number) => new Float32Array(buffer, offset, count);
   const bits = u(0);
-  const [p, c, s, n] = [148, 152, 156, 160].map((offset) => view.getUint32(offset, true));
-  must(p <= LIMITS.points && c <= LIMITS.contacts && s <= LIMITS.samples && n <= LIMITS.nodes, 'a frame of impossible size');
-  const atContacts = FRAME_HEADER + 12 * p;
+  const [p, c, s, n, q] = [148, 152, 156, 160, 164].map((offset) => view.getUint32(offset, true));
+  must(p <= LIMITS.points && c <= LIMITS.contacts && s <= LIMITS.samples && n <= LIMITS.nodes && q <= LIMITS.resting, 'a frame of impossible size');
+  const atResting = FRAME_HEADER + 12 * p;
+  const ofResting = 12 * RESTING_POINTS;
+  const atContacts = atResting + ofResting * q;
   const atSamples = atContacts + 32 * c;
   const atNodes = atSamples + 4 * SAMPLE_WORDS * s;
   const coarse = (bits & 32) !== 0;
@@ -150,6 +154,7 @@ function decodeFrame(buffer: ArrayBuffer, view: DataView): Frame {
     hidden: view.getFloat32(124, true), unit: view.getFloat32(128, true),
     tipError: floats(132, 3), tipErrorDepth: view.getFloat32(144, true),
     line: floats(FRAME_HEADER, 3 * p),
+    resting: Array.from({ length: q }, (_, i) => floats(atResting + ofResting * i, 3 * RESTING_POINTS)),
     contacts, contactForces,
     samples: floats(atSamples, SAMPLE_WORDS * s),
     displacement: coarse ? Int16Array.from(new Int8Array(buffer, atNodes, 3 * n)) : new Int16Array(buffer, atNodes, 3 * n),

@@ -17,17 +17,22 @@ export class TemplatePicker {
 
   constructor(root: HTMLElement, private readonly session: Session, private readonly hand: HandControl) {
     const key = element('div', 'picker-key');
-    for (const [kind, text] of [['planned', 'planned'], ['needle', 'needle']]) {
-      const item = element('span');
+    for (const [kind, text] of [['planned', 'planned'], ['needle', 'needle'], ['taken', 'needle that stays']]) {
+      const item = element('span', `of-${kind}`);
       item.append(element('i', kind), text);
       key.append(item);
     }
+    const taken = key.querySelector('.of-taken') as HTMLElement;
+    taken.hidden = true;
     const hint = element('p', 'picker-hint',
       'Wheel over the 3D view or ↑ pushes. A click on a hole moves the needle there. ? lists all keys.');
     const colors = element('div', 'picker-map');
     this.map = new TemplateMap(colors, session);
     root.append(this.title, this.grid, key, colors, hint);
-    session.on('scene', (scene) => this.build(scene));
+    session.on('scene', (scene) => {
+      taken.hidden = scene.stabilising.length === 0;
+      this.build(scene);
+    });
     session.on('status', () => {
       hint.hidden = session.guest !== '';  // the page cannot push then
       this.mark();
@@ -66,13 +71,16 @@ export class TemplatePicker {
     for (const hole of holes(template)) {
       const mark = svg('g', { class: 'hole', role: 'gridcell', tabindex: -1, transform: `translate(${x(hole.column)} ${y(hole.row)})` });
       const isPlanned = planned.has(hole.name);
-      mark.setAttribute('aria-label', `Hole ${hole.name}${isPlanned ? ', planned' : ''}`);
+      const isTaken = scene.stabilising.includes(hole.name);
+      const more = isTaken ? ', a needle stays in it' : isPlanned ? ', planned' : '';
+      mark.setAttribute('aria-label', `Hole ${hole.name}${more}`);
       mark.append(svg('rect', { x: -0.5, y: -0.5, width: 1, height: 1, class: 'area' }));
       if (isPlanned) mark.append(svg('circle', { r: 0.44, class: 'planned' }));
+      if (isTaken) mark.append(svg('circle', { r: 0.3, class: 'taken' }));
       const whole = hole.column % 2 === 0 && hole.row % 2 === 0;
       mark.append(svg('circle', { r: whole ? 0.2 : 0.13, class: 'dot' }));
       const title = svg('title', {});
-      title.textContent = hole.name + (isPlanned ? ', planned' : '');
+      title.textContent = hole.name + more;
       mark.append(title);
       marks.set(hole.name, { group: mark, title, name: title.textContent });
       const number = this.list.length;

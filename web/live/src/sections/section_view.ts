@@ -7,6 +7,7 @@ import { INK, lineScale, SOFT } from '../../../shared/plot_style';
 import { roundDown } from '../../../shared/colors';
 import type { Anatomy } from '../anatomy';
 import { CanvasBox } from '../canvas_box';
+import { RESTING } from '../palette';
 import { focusBounds, holes, regionTriangles, samePatient, type Hole, type Scene } from '../scene';
 import type { Session } from '../session';
 import type { Frame } from '../wire';
@@ -135,6 +136,7 @@ export class SectionView {
     }
     this.drawOtherPlane();
     this.seedMarks.drawSeeds(plane.value, place);
+    this.drawResting();
     this.drawNeedle();
     this.drawLetters();
     this.drawScale();
@@ -210,41 +212,10 @@ export class SectionView {
     const { line } = frame;
     const tip = tipOf(frame, TIP);
     const r = Math.max(text * 0.34, (scene.needle.diameter_mm / 2) * this.pixels);
-    const path = () => {
-      context.beginPath();
-      for (let i = 0; i < line.length; i += 3) context.lineTo(this.u(line[i], line[i + 2]), this.v(line[i + 1]));
-    };
     context.save();
-    context.lineCap = 'round';
-    if (this.plane.axis === 0) {
-      const width = Math.max(2.5, scene.needle.diameter_mm * this.pixels);
-      context.strokeStyle = '#fff';
-      context.lineWidth = width + 2.5;
-      path();
-      context.stroke();
-      context.strokeStyle = INK;
-      // faint if the tip is not near this plane
-      context.globalAlpha = Math.abs(tip[0] - this.plane.value) < 3 ? 1 : 0.45;
-      context.lineWidth = width;
-      path();
-      context.stroke();
-    } else {
-      context.strokeStyle = INK;
-      context.globalAlpha = 0.5;
-      context.lineWidth = 1.2;
-      path();
-      context.stroke();
-    }
-    context.globalAlpha = 1;
-    const crosses = crossing(line, this.plane.axis, this.plane.value, HIT);
+    this.drawShaft(line, INK, Math.abs(tip[0] - this.plane.value) < 3);
     if (this.plane.axis === 2) {
-      const at = crosses ? HIT : tip;
-      circle(context, this.u(at[0], at[2]), this.v(at[1]), r);
-      context.fillStyle = crosses ? INK : '#fff';
-      context.strokeStyle = crosses ? '#fff' : INK;
-      context.lineWidth = 2;
-      context.fill();
-      context.stroke();
+      this.drawCrossing(line, tip, INK, r);
     } else {
       this.drawTipError(frame, scene, r);
       circle(context, this.u(tip[0], tip[2]), this.v(tip[1]), r);
@@ -255,6 +226,59 @@ export class SectionView {
       context.stroke();
     }
     context.restore();
+  }
+
+  /** Draws a needle's line. @param isNear whether the needle is near a sagittal plane; else it is faint */
+  private drawShaft(line: Float32Array, color: string, isNear: boolean): void {
+    const { context } = this.box;
+    const diameter = this.anatomy?.scene.needle.diameter_mm ?? 0;
+    const path = () => {
+      context.beginPath();
+      for (let i = 0; i < line.length; i += 3) context.lineTo(this.u(line[i], line[i + 2]), this.v(line[i + 1]));
+    };
+    context.lineCap = 'round';
+    const width = this.plane.axis === 0 ? Math.max(2.5, diameter * this.pixels) : 1.2;
+    if (this.plane.axis === 0) {
+      context.strokeStyle = '#fff';
+      context.lineWidth = width + 2.5;
+      path();
+      context.stroke();
+    }
+    context.strokeStyle = color;
+    context.globalAlpha = this.plane.axis === 0 ? (isNear ? 1 : 0.45) : 0.5;
+    context.lineWidth = width;
+    path();
+    context.stroke();
+    context.globalAlpha = 1;
+  }
+
+  /** Draws where a needle crosses a transverse plane: filled, or empty at its tip if it does not reach the plane. */
+  private drawCrossing(line: Float32Array, tip: Float32Array, color: string, r: number): void {
+    const { context } = this.box;
+    const crosses = crossing(line, this.plane.axis, this.plane.value, HIT);
+    const at = crosses ? HIT : tip;
+    circle(context, this.u(at[0], at[2]), this.v(at[1]), r);
+    context.fillStyle = crosses ? color : '#fff';
+    context.strokeStyle = crosses ? '#fff' : color;
+    context.lineWidth = 2;
+    context.fill();
+    context.stroke();
+  }
+
+  /** Draws the needles that stay in the tissue. */
+  private drawResting(): void {
+    const frame = this.session.frame;
+    const scene = this.anatomy?.scene;
+    if (!frame || !scene) return;
+    const { context, text } = this.box;
+    const r = Math.max(text * 0.3, (scene.needle.diameter_mm / 2) * this.pixels);
+    for (const line of frame.resting) {
+      const tip = line.subarray(line.length - 3);
+      context.save();
+      this.drawShaft(line, RESTING, Math.abs(tip[0] - this.plane.value) < 3);
+      if (this.plane.axis === 2) this.drawCrossing(line, tip, RESTING, r);
+      context.restore();
+    }
   }
 
   /** Draws the tip error. Its points are places in the undeformed patient, like the dashed outlines. */

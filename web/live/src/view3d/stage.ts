@@ -6,6 +6,7 @@ import { onRepaint } from '../../../shared/repaint';
 import { BaseStage } from '../../../shared/stage';
 import { VIEWS } from '../../../shared/views';
 import type { Anatomy } from '../anatomy';
+import { RESTING } from '../palette';
 import { organBounds } from '../scene';
 import type { Frame } from '../wire';
 import { CutPlane } from './cut_plane';
@@ -16,6 +17,8 @@ import { ProbeBody } from './probe_body';
 import { SeedBodies } from './seed_bodies';
 import { TemplatePlate } from './template_plate';
 import { TipErrorMark } from './tip_error_mark';
+
+const NOTHING = new Float32Array(0);
 
 export class Stage extends BaseStage {
   surfaces: RegionSurface[] = [];
@@ -28,6 +31,8 @@ export class Stage extends BaseStage {
   readonly probe = new ProbeBody();
   onFirstPicture: () => void = () => {};
   private needle = new NeedleMesh(1.27);
+  private resting: NeedleMesh[] = [];  // needles that stay in the tissue
+  private diameter = 1.27;
   private readonly pace: Pace;
   private drawn = false;
   private compiled = false;  // shaders are compiled in the background, because waiting for them would block the page
@@ -53,9 +58,11 @@ export class Stage extends BaseStage {
       this.scene.remove(surface.object);
       surface.dispose();
     }
-    this.scene.remove(this.needle.object, this.contacts.object);
+    this.scene.remove(this.needle.object, this.contacts.object, ...this.resting.map((needle) => needle.object));
     const { scene } = anatomy;
     this.needle = new NeedleMesh(scene.needle.diameter_mm);
+    this.resting = [];
+    this.diameter = scene.needle.diameter_mm;
     const contactsShown = this.contacts.object.visible;  // the check box applies to every patient
     this.contacts = new ContactMarks(scene.needle.diameter_mm);
     this.contacts.object.visible = contactsShown;
@@ -84,9 +91,19 @@ export class Stage extends BaseStage {
 
   showNeedle(frame: Frame): void {
     this.needle.show(frame.line);
+    this.showResting(frame.resting);
     this.contacts.show(frame.line, frame.contacts);
     this.tipError.show(frame);
     this.draw();
+  }
+
+  private showResting(lines: Float32Array[]): void {
+    while (this.resting.length < lines.length) {
+      const needle = new NeedleMesh(this.diameter, RESTING);
+      this.resting.push(needle);
+      this.scene.add(needle.object);
+    }
+    this.resting.forEach((needle, i) => needle.show(lines[i] ?? NOTHING));
   }
 
   override readonly draw = onRepaint(() => {
