@@ -56,7 +56,7 @@ Result<Reply> LiveRoom::enter(const NeedleStart& start) {
   told_.recording.name = name;
   told_.device = other ? settings_.companion->name() : "page";
   auto run = LiveRun::start(start.open, start.insertion, shelf_.folder(name), settings_.runner,
-                            settings_.recorded_frames_per_s, std::move(other), plan ? &*plan : nullptr);
+                            settings_.recorded_frames_per_s, std::move(other), plan ? &*plan : nullptr, settings_.say);
   if (!run) {
     told_.recording = {};
     return run.error();
@@ -66,9 +66,6 @@ Result<Reply> LiveRoom::enter(const NeedleStart& start) {
   hand_.give(run_->hand());
   happened_ = {{.kind = "started", .time_s = 0.0, .depth_mm = 0.0, .force_N = 0.0, .region = start.name}};
   reply.show.emplace_back(happened_.front());
-  if (settings_.say) {
-    for (const std::string& remark : run_->remarks()) settings_.say(remark);
-  }
   if (!implant_) return reply;
   run_->record_implant(implant_->state(), implant_->is_score_current());
   set_seeds();

@@ -35,7 +35,8 @@ void LiveRun::set_field(std::shared_ptr<const DisplayField> field) {
 Result<std::unique_ptr<LiveRun>> LiveRun::start(const OpenModel& open, std::size_t insertion,
                                                 const std::filesystem::path& folder, const RunnerSettings& settings,
                                                 double recorded_frames_per_s, std::unique_ptr<Device> other,
-                                                const RecordedPlan* plan_of_seeds) {
+                                                const RecordedPlan* plan_of_seeds,
+                                                const std::function<void(const std::string&)>& say) {
   std::unique_ptr<LiveRun> run(new LiveRun(open, insertion, recorded_frames_per_s));
   const PlannedInsertion& plan = run->plan_;
   std::shared_ptr<Device> device;
@@ -48,7 +49,7 @@ Result<std::unique_ptr<LiveRun>> LiveRun::start(const OpenModel& open, std::size
   kept.keep_steps = true;
   auto body = SimulationSteppable::create(open.model, insertion, run->seeds_.probe());
   if (!body) return body.error();
-  run->remarks_ = (*body)->remarks();
+  const std::vector<std::string> remarks = (*body)->remarks();
   auto runner = RealtimeRunner::create(*std::move(body), std::make_unique<SharedDevice>(std::move(device)), kept);
   if (!runner) return runner.error();
   run->runner_ = std::move(*runner);
@@ -58,7 +59,10 @@ Result<std::unique_ptr<LiveRun>> LiveRun::start(const OpenModel& open, std::size
   scenario.insertions = {scenario.insertions[insertion]};  // only the insertion that is recorded
   info.scenario_text = to_toml(scenario);
   info.warnings = open.warnings();
-  info.warnings.insert(info.warnings.end(), run->remarks_.begin(), run->remarks_.end());
+  for (const std::string& remark : remarks) {
+    info.warnings.push_back(remark);
+    if (say) say(remark);
+  }
   run->recording_.begin(folder, info, open.model->mesh(), plan_of_seeds);
   if (auto started = run->runner_->start(); !started) return started.error();
   return run;

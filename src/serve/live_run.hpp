@@ -27,10 +27,12 @@ class LiveRun {
   /// recording and recording_problem() gives the reason.
   /// @param other device that moves the needle; null: a hand at a page moves it
   /// @param plan the plan of seeds that the needle belongs to, for the recording; null: there is none
+  /// @param say is told of what happened to the needles that stay on their way in; may be empty
   static Result<std::unique_ptr<LiveRun>> start(const OpenModel& open, std::size_t insertion,
                                                 const std::filesystem::path& folder, const RunnerSettings& settings,
                                                 double recorded_frames_per_s, std::unique_ptr<Device> other,
-                                                const RecordedPlan* plan = nullptr);
+                                                const RecordedPlan* plan = nullptr,
+                                                const std::function<void(const std::string&)>& say = {});
 
   LiveRun(const LiveRun&) = delete;
   LiveRun& operator=(const LiveRun&) = delete;
@@ -65,8 +67,6 @@ class LiveRun {
   void stop_recording(const std::string& why) { recording_.stop(why); }
   [[nodiscard]] const std::string& recording_problem() const { return recording_.problem(); }
   [[nodiscard]] double time_s() const { return time_s_; }
-  /// Sentences about the way in of the needles that stay.
-  [[nodiscard]] const std::vector<std::string>& remarks() const { return remarks_; }
   /// Regions that contained the needle in the last picture, the region of the tip first.
   [[nodiscard]] std::vector<std::string> inside() const;
 
@@ -84,8 +84,7 @@ class LiveRun {
   TissueView view_;
   LiveCurve curve_;
   FrameNews news_;
-  bool seen_ = false;  ///< a snapshot has been fetched
-  std::vector<std::string> remarks_;
+  bool seen_ = false;                    ///< a snapshot has been fetched
   std::vector<TissueForce> force_room_;  ///< buffer for forces
   std::vector<Step> step_room_;          ///< buffer for steps
   double time_s_ = 0.0;

@@ -159,7 +159,7 @@ TEST(Outbox, a_curve_that_has_waited_has_as_many_samples_as_it_is_worth) {
     std::size_t highest = 0;
     for (std::size_t k = 0; k < word(*bytes, 39); ++k) {
       float force = 0.0F;
-      std::memcpy(&force, bytes->data() + 164 + 32 * k + 8, sizeof force);
+      std::memcpy(&force, bytes->data() + 168 + 32 * k + 8, sizeof force);
       highest += force == 5.0F ? 1 : 0;
     }
     EXPECT_EQ(highest, 1u) << "the extreme is kept";

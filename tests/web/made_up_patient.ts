@@ -35,7 +35,7 @@ export function makePatient(): MadeUpPatient {
     points: Float32Array.from(points),
     corners: Uint32Array.from(corners),
     text: {
-      protocol: 3, version: '0.0.0', name: 'Made-up patient: one needle into the left half', case: 0, cases: ['Made-up patient', 'Another made-up patient'],
+      protocol: 4, version: '0.0.0', name: 'Made-up patient: one needle into the left half', case: 0, cases: ['Made-up patient', 'Another made-up patient'],
       regions, patches,
       template: { pitch_mm: 5, columns, rows, centre_mm: [0, 0], z_mm: -62 },
       insertions: [{ name: 'hole e3.5', hole: 'e3.5', entry_mm: [15, 5, SKIN_Z], direction: [0, 0, 1], depth_mm: 66, speed_mm_per_s: 20 }],
