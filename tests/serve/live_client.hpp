@@ -141,6 +141,7 @@ class LiveClient {
       force_N = at<float>(bytes, 48);
       most_N = std::max(most_N, force_N);
       samples = at<std::uint32_t>(bytes, 156);
+      resting = at<std::uint32_t>(bytes, 164);
       displaced_nodes = at<std::uint32_t>(bytes, 160);
       ++frames;
     } else if (kind == 3) {
@@ -196,7 +197,8 @@ class LiveClient {
   std::vector<nlohmann::json> events, notices;
   std::uint32_t received = 0, scenes = 0, frames = 0, images = 0, bits = 0, samples = 0, displaced_nodes = 0,
                 scene_nodes = 0, dose_points = 0;
-  bool answers = true;  // as a page does: says what it has taken up, and goes on after its hand was stopped
+  std::uint32_t resting = 0;  // needles that rest in the tissue
+  bool answers = true;        // as a page does: says what it has taken up, and goes on after its hand was stopped
   std::size_t received_bytes = 0;
   double time_s = 0.0;
   float depth_mm = 0.0F, force_N = 0.0F, most_N = 0.0F;

@@ -32,9 +32,9 @@ inline Scenario hole_scenario() {
   return s;
 }
 
-inline serve::CaseSource box_case(const std::string& title) {
-  return {title, [](const Progress& progress) -> Result<serve::LoadedCase> {
-            auto model = Model::compile(hole_scenario(), box_patient(), "case.toml", {}, progress);
+inline serve::CaseSource box_case(const std::string& title, const Scenario& scenario = hole_scenario()) {
+  return {title, [scenario](const Progress& progress) -> Result<serve::LoadedCase> {
+            auto model = Model::compile(scenario, box_patient(), "case.toml", {}, progress);
             if (!model) return model.error();
             return serve::LoadedCase{*model, {"the box has a note"}};
           }};

@@ -229,6 +229,22 @@ TEST(Server, another_hole_another_case_and_back_to_the_start) {
   ASSERT_TRUE(client->until([&] { return client->notices.size() == 3; }));
 }
 
+TEST(Server, needles_that_stay_do_so_through_each_hole_but_their_own) {
+  Scenario scenario = hole_scenario();
+  scenario.procedure.stabilising = {"C3"};
+  const Serving serving([&](serve::ServerSettings& s) { s.session.cases = {box_case("beside a needle", scenario)}; });
+  const auto client = ready_client(serving);
+  EXPECT_EQ(client->scene["stabilising"], nlohmann::json({"C3"}));
+  client->command(R"({"do":"take"})");
+  client->command(R"({"do":"hole","hole":"C3"})");
+  ASSERT_TRUE(client->until([&] { return client->notices.size() == 1; })) << "a needle is in it";
+  EXPECT_NE(client->notices[0]["text"].get<std::string>().find("is taken"), std::string::npos);
+  client->command(R"({"do":"hole","hole":"E3.5"})");
+  ASSERT_TRUE(client->until([&] { return client->status.value("hole", "") == "E3.5" && client->ready(); }));
+  ASSERT_TRUE(client->go_to(10.0F, 100.0F));
+  EXPECT_EQ(client->resting, 1u);
+}
+
 TEST(Server, a_recording_replays_in_the_page_and_repeats_to_the_last_bit) {
   Serving serving;
   const auto client = ready_client(serving);
