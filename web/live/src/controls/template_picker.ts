@@ -17,7 +17,7 @@ export class TemplatePicker {
 
   constructor(root: HTMLElement, private readonly session: Session, private readonly hand: HandControl) {
     const key = element('div', 'picker-key');
-    for (const [kind, text] of [['planned', 'planned'], ['needle', 'needle'], ['taken', 'needle that stays']]) {
+    for (const [kind, text] of [['planned', 'planned'], ['needle', 'needle'], ['taken', 'stays']]) {
       const item = element('span', `of-${kind}`);
       item.append(element('i', kind), text);
       key.append(item);
