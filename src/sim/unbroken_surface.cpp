@@ -43,6 +43,7 @@ std::optional<UnbrokenSurface::Pressed> UnbrokenSurface::pressed_now(const Simul
   const TetMesh& mesh = model.mesh();
   const Step& step = simulation.last_step();
   const Vec3 axis = step.base.rotation * Vec3::UnitZ();
+  const Needle& needle = simulation.insertion().needle();
   Vec3 at_rest = Vec3::Zero();
   const auto& corners = mesh.tets[static_cast<std::size_t>(tip->at.tet)];
   for (std::size_t i = 0; i < 4; ++i)
@@ -59,7 +60,8 @@ std::optional<UnbrokenSurface::Pressed> UnbrokenSurface::pressed_now(const Simul
   Pressed pressed{.region = name_of(behind),
                   .past_mm = (step.tip_mm - at_rest).dot(axis),
                   .way_mm = step.base_depth_mm - cut_to_mm_,
-                  .force_N = (tip->force - tip->lasting).dot(axis),  // what has crept is no force on the surface
+                  // What has crept is no force on the surface, nor is what a bowed tip bears across itself.
+                  .force_N = (tip->force - tip->lasting).dot(needle.tangent(needle.length())),
                   .at_surface = before != behind,
                   .hand_N = step.force_axial_N,
                   .bow = (step.tip_mm - step.base.origin).norm() / model.scenario().needle.length_mm};

@@ -137,6 +137,29 @@ TEST(UnbrokenSurface, the_force_told_is_that_of_the_tip_however_long_the_needle_
   EXPECT_LT(told_N, most_N);
 }
 
+/// A tip that is bent aside bears more along the hand's direction than along itself, and the latter breaks a surface.
+TEST(UnbrokenSurface, the_force_told_of_a_needle_that_bows_is_the_one_that_decides) {
+  Scenario s = with("body", 50.0);
+  s.tissue["body"].young_kPa = 8.0;
+  s.needle.diameter_mm = 0.908;
+  s.needle.lumen_diameter_mm = 0.603;
+  s.needle.length_mm = 200.0;
+  s.insertions[0].direction = {0.2, -0.25, 1.0};
+  s.insertions[0].entry_mm = {-4.0, 12.0, 0.0};
+  s.insertions[0].depth_mm = 45.0;
+  s.insertions[0].retract = false;
+  const std::string held = warnings_of(s);
+  const std::string before = "mm inwards with up to ";
+  ASSERT_TRUE(test::contains(held, before)) << held;
+  const double told_N = std::stod(held.substr(held.find(before) + before.size()));
+  const auto said = [&](double share) {
+    s.tissue["body"].puncture_N = share * told_N;
+    return warnings_of(s);
+  };
+  EXPECT_SAYS(said(1.02), "did not enter the body");
+  EXPECT_FALSE(test::contains(said(0.98), "did not enter the body")) << told_N;
+}
+
 /// The force that the tip reaches at the deepest point decides whether a capsule breaks: one that is a little stronger
 /// or weaker is a close call, and one that is much stronger or weaker is none.
 TEST(UnbrokenSurface, a_capsule_that_was_about_to_break_or_broke_at_the_last_moment_is_told_of) {

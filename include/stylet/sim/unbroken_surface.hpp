@@ -38,7 +38,7 @@ class UnbrokenSurface {
     std::string region;
     double past_mm = 0.0;     ///< of the tip beyond the rest position of what it presses
     double way_mm = 0.0;      ///< of the base since the tip has cut, or entered the region
-    double force_N = 0.0;     ///< force of the tip, along the needle
+    double force_N = 0.0;     ///< force of the tip, along itself
     bool at_surface = true;   ///< false: within the region, whose tissue is not cut
     bool by_cutting = false;  ///< the tissue's cutting force holds the tip, not a membrane
     double needed_N = 0.0;    ///< force that would break the surface or cut the tissue
