@@ -60,13 +60,13 @@ struct PressedOnBone : NeedleInBlock {
       go(depth + way, 20.0, way / 20.0);
       iterations += report.iterations;
       most = std::max(most, report.iterations);
-      const double before = largest;
-      largest = 1.0;
+      double largest = 0.0;
       for (const ContactState& contact : insertion->contacts()) largest = std::max(largest, contact.force.norm());
       if (report.flags & Step::not_converged) {
         ++unbalanced;
-        grown = std::max(grown, largest / before);
+        grown = std::max(grown, largest / borne);
       }
+      borne = std::max(borne, largest);
       ++steps;
     }
   }
@@ -81,10 +81,10 @@ struct PressedOnBone : NeedleInBlock {
   /// [mm] Distance of the tip from the needle's line.
   [[nodiscard]] double bow() const { return axis.cross(report.tip_mm - point).norm(); }
   int iterations = 0;
-  int most = 0;          ///< largest number in a step
-  int unbalanced = 0;    ///< number of steps without balance
-  double largest = 1.0;  ///< [N] force of a contact in the last step, at least 1 N
-  double grown = 0.0;    ///< largest growth factor of that force in a step without balance
+  int most = 0;        ///< largest number in a step
+  int unbalanced = 0;  ///< number of steps without balance
+  double borne = 1.0;  ///< [N] largest force of a contact in all steps so far, at least 1 N
+  double grown = 0.0;  ///< largest force in a step without balance, over those that were borne before
   int steps = 0;
 };
 

@@ -26,7 +26,7 @@ bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == s
 TEST(Server, a_hand_at_a_page_pushes_the_needle_in_and_sees_force_and_events) {
   const Serving serving;
   const auto client = ready_client(serving);
-  EXPECT_EQ(client->scene["protocol"], 3);
+  EXPECT_EQ(client->scene["protocol"], 4);
   EXPECT_EQ(client->scene["cases"], nlohmann::json({"first", "second"}));
   EXPECT_EQ(client->scene["insertions"][0]["hole"], "D4");
   EXPECT_LT(client->depth_mm, 0.0F) << "before the skin";
