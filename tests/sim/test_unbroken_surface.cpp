@@ -71,9 +71,11 @@ TEST(UnbrokenSurface, nothing_is_said_of_soft_tissue_that_a_needle_drags_along_w
     p.friction_coulomb_N_per_m *= 3.0;
     p.friction_static_N_per_m *= 3.0;
   }
-  for (const double depth_mm : {30.0, 34.0, 38.0, 42.0, 46.0}) {
+  for (const double depth_mm : {30.0, 42.0}) {
     s.insertions[0].depth_mm = depth_mm;
-    EXPECT_FALSE(test::contains(warnings_of(s), "did not go on")) << depth_mm << ": " << warnings_of(s);
+    s.insertions[0].retract = false;
+    const std::string said = warnings_of(s);
+    EXPECT_FALSE(test::contains(said, "did not go on")) << depth_mm << ": " << said;
   }
 }
 
