@@ -30,6 +30,10 @@ Result<std::unique_ptr<SimulationSteppable>> SimulationSteppable::create(const s
   auto remarks = put_in_staying_needles(made->simulation_, {});
   if (!remarks) return remarks.error();
   made->remarks_ = *std::move(remarks);
+  if (model->staying().size() > Snapshot::kResting) {
+    made->remarks_.push_back("Of the " + std::to_string(model->staying().size()) + " needles in place, the first " +
+                             std::to_string(Snapshot::kResting) + " are drawn; all of them hold the tissue.");
+  }
   made->simulation_.place(model->insertions()[insertion]);
   made->simulation_.prepare();
   made->worker_ = std::make_unique<ComplianceWorker>(made->simulation_.supply(), made->simulation_.supply_settings());
@@ -86,16 +90,12 @@ void SimulationSteppable::describe(Snapshot& out) noexcept {
   if (probe_) probe_->serve(simulation_);  // after the step's force has been passed on
 }
 
-/// The needles at rest: their shapes, and how many there is no room for.
+/// The shapes of the needles at rest, as many as there is room for.
 void SimulationSteppable::describe_others(Snapshot& out) const noexcept {
   const Insertion& insertion = simulation_.insertion();
-  out.resting_count = out.resting_left_out = 0;
+  out.resting_count = 0;
   for (int number = 0; number < insertion.needles(); ++number) {
-    if (number == insertion.held()) continue;
-    if (out.resting_count == static_cast<int>(Snapshot::kResting)) {
-      ++out.resting_left_out;
-      continue;
-    }
+    if (number == insertion.held() || out.resting_count == static_cast<int>(Snapshot::kResting)) continue;
     const Needle& needle = insertion.needle(number);
     Snapshot::RestingShape& shape = out.resting[static_cast<std::size_t>(out.resting_count++)];
     constexpr std::size_t last = Snapshot::kRestingPoints - 1;

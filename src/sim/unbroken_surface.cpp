@@ -60,7 +60,8 @@ std::optional<UnbrokenSurface::Pressed> UnbrokenSurface::pressed_now(const Simul
   Pressed pressed{.region = name_of(behind),
                   .past_mm = (step.tip_mm - at_rest).dot(axis),
                   .way_mm = step.base_depth_mm - cut_to_mm_,
-                  // What has crept is no force on the surface, nor is what a bowed tip bears across itself.
+                  // Two parts of the tip's force do not load the surface: the force under which the tissue has crept,
+                  // and the force across the tip of a needle that has bowed.
                   .force_N = (tip->force - tip->lasting).dot(needle.tangent(needle.length())),
                   .at_surface = before != behind,
                   .hand_N = step.force_axial_N,

@@ -26,6 +26,13 @@ std::string warnings_of(const Scenario& scenario) {
   return all;
 }
 
+/// [N] The force of the tip that a warning tells; NaN: it tells none.
+double told_N(const std::string& said) {
+  const std::string before = "mm inwards with up to ";
+  const auto at = said.find(before);
+  return at == std::string::npos ? std::nan("") : std::stod(said.substr(at + before.size()));
+}
+
 Scenario with(const std::string& region, double puncture_N) {
   Scenario s = box_scenario();
   TissueParameters p = default_tissue(region);
@@ -129,14 +136,10 @@ TEST(UnbrokenSurface, the_force_told_is_that_of_the_tip_however_long_the_needle_
   const test::Finished done(compiled(s));
   double most_N = 0.0;
   for (const Step& step : done.kept.steps) most_N = std::max(most_N, step.force_axial_N);
-  const auto& warnings = done.summary.warnings;
-  const auto said = std::find_if(warnings.begin(), warnings.end(), [](const std::string& text) {
-    return test::contains(text, "mm inwards with up to ");
-  });
-  ASSERT_NE(said, warnings.end());
-  const double told_N = std::stod(said->substr(said->find("mm inwards with up to ") + 22));
-  EXPECT_GT(told_N, 0.3 * most_N);
-  EXPECT_LT(told_N, most_N);
+  std::string said;
+  for (const std::string& warning : done.summary.warnings) said += warning + '\n';
+  EXPECT_GT(told_N(said), 0.3 * most_N);
+  EXPECT_LT(told_N(said), most_N);
 }
 
 /// A tip that is bent aside bears more along the hand's direction than along itself, and the latter breaks a surface.
@@ -150,16 +153,14 @@ TEST(UnbrokenSurface, the_force_told_of_a_needle_that_bows_is_the_one_that_decid
   s.insertions[0].entry_mm = {-4.0, 12.0, 0.0};
   s.insertions[0].depth_mm = 45.0;
   s.insertions[0].retract = false;
-  const std::string held = warnings_of(s);
-  const std::string before = "mm inwards with up to ";
-  ASSERT_TRUE(test::contains(held, before)) << held;
-  const double told_N = std::stod(held.substr(held.find(before) + before.size()));
+  const double reached_N = told_N(warnings_of(s));
+  ASSERT_GT(reached_N, 0.0);
   const auto said = [&](double share) {
-    s.tissue["body"].puncture_N = share * told_N;
+    s.tissue["body"].puncture_N = share * reached_N;
     return warnings_of(s);
   };
   EXPECT_SAYS(said(1.02), "did not enter the body");
-  EXPECT_FALSE(test::contains(said(0.98), "did not enter the body")) << told_N;
+  EXPECT_FALSE(test::contains(said(0.98), "did not enter the body")) << reached_N;
 }
 
 /// The force that the tip reaches at the deepest point decides whether a capsule breaks: one that is a little stronger
@@ -167,10 +168,8 @@ TEST(UnbrokenSurface, the_force_told_of_a_needle_that_bows_is_the_one_that_decid
 TEST(UnbrokenSurface, a_capsule_that_was_about_to_break_or_broke_at_the_last_moment_is_told_of) {
   Scenario s = with("prostate", 50.0);
   s.insertions[0].depth_mm = 28.0;
-  const std::string held = warnings_of(s);
-  const std::string before = "mm inwards with up to ";
-  ASSERT_TRUE(test::contains(held, before)) << held;
-  const double reached_N = std::stod(held.substr(held.find(before) + before.size()));
+  const double reached_N = told_N(warnings_of(s));
+  ASSERT_GT(reached_N, 0.0);
   const auto said = [&](double share) {
     s.tissue["prostate"].puncture_N = share * reached_N;
     return warnings_of(s);

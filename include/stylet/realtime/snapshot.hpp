@@ -57,7 +57,6 @@ struct Snapshot {
   double clock_s = 0.0;  ///< end of the step on the runner's clock, which starts with the creation of the runner
   std::array<Triple, kCentreline> centreline{};       ///< [mm] LPS, base to tip, evenly spaced
   int resting_count = 0;                              ///< used entries of `resting`
-  int resting_left_out = 0;                           ///< needles at rest that did not fit
   std::array<RestingShape, kResting> resting{};       ///< [mm] LPS, needles at rest, base to tip, evenly spaced
   int contact_count = 0;                              ///< used entries of `contacts`
   int contacts_left_out = 0;                          ///< contacts that did not fit

@@ -59,7 +59,7 @@ class SimulationSteppable final : public Steppable {
 
   /// The simulation; must not be used while the loop runs.
   [[nodiscard]] Simulation& simulation() { return simulation_; }
-  /// Sentences about the way in of the needles that stay.
+  /// Sentences about the needles that stay: what happened on their way in, and whether all of them are drawn.
   [[nodiscard]] const std::vector<std::string>& remarks() const { return remarks_; }
 
   [[nodiscard]] Pose base() const noexcept override;

@@ -29,7 +29,7 @@ struct LiveFrame {
   std::uint32_t steps = 0;                                              ///< number of steps taken
   std::uint32_t missed = 0;                                             ///< number of missed deadlines
   double roll_deg = 0.0, tilt_left_deg = 0.0, tilt_anterior_deg = 0.0;  ///< orientation of the hand
-  double left_out_N = 0.0;            ///< the larger of two forces: whose far field, and whose near field, is not shown
+  double left_out_N = 0.0;  ///< force whose far field or near field (the larger of both), or that at all, is not shown
   std::optional<TipError> tip_error;  ///< empty in a replay, because it is not recorded
   std::vector<float> centreline;      ///< (3 p) [mm] LPS, base to tip
   /// (3 × Snapshot::kRestingPoints × needles) [mm] LPS, needles that rest in the tissue, each base to tip; none in a
