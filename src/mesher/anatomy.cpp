@@ -13,6 +13,14 @@ namespace {
 
 constexpr double kOffsetRoom = 4.0;  // [mm] largest offset of a surface for which the boxes leave room
 
+/// Whether an overlap of two structures is normal: anything may lie in the body, in a band or in fat, urethra and zones
+/// lie in the gland, and the lumen lies in the rectum.
+bool belongs_inside(const Structure& inner, const Structure& outer) {
+  return outer.name == "body" || outer.name == "band" || outer.name.ends_with("_fat") ||
+         (outer.target && (inner.target || inner.name == "urethra")) ||
+         (outer.name == "rectum" && inner.name == "rectal_lumen");
+}
+
 }  // namespace
 
 int priority(std::string_view c) {
@@ -111,6 +119,25 @@ double Anatomy::interface_distance(int a, int b, const Vec3& p) const {
   return surface(layers[std::min(la, lb)]);
 }
 
+double Anatomy::distance_to(int structure, const Vec3& p) const {
+  const auto to = [&](const Layer& layer) {
+    const double whole = layer.solid->distance(p) - layer.offset;
+    return layer.clipped ? std::max(whole, layers.back().solid->distance(p) - layers.back().offset) : whole;
+  };
+  const Structure& own = structures[static_cast<std::size_t>(structure)];
+  const auto place = static_cast<std::size_t>(layer_of(structure + 1));
+  double distance = to(layers[place]);
+  for (std::size_t higher = 0; higher < place; ++higher) {
+    const Structure& taker = structures[static_cast<std::size_t>(layers[higher].members[0])];
+    if (layers[higher].box.contains(p) && !own.generated && !belongs_inside(taker, own))
+      distance = std::max(distance, -to(layers[higher]));
+  }
+  for (const int other : layers[place].members) {
+    if (other != structure) distance = std::max(distance, interface_distance(structure + 1, other + 1, p));
+  }
+  return distance;
+}
+
 Vec3 Anatomy::project(int a, int b, Vec3 p) const {
   constexpr double kStep = 0.2;  // [mm] step for the gradient; with a smaller one, kinks of the grid would matter
   for (int i = 0; i < 3; ++i) {
@@ -168,14 +195,6 @@ double offset_for_volume(const Shape& shape, double volume) {
     (shape.volume(middle) < volume ? low : high) = middle;
   }
   return 0.5 * (low + high);
-}
-
-/// Whether an overlap of two structures is normal: anything may lie in the body, in a band or in fat, urethra and zones
-/// lie in the gland, and the lumen lies in the rectum.
-bool belongs_inside(const Structure& inner, const Structure& outer) {
-  return outer.name == "body" || outer.name == "band" || outer.name.ends_with("_fat") ||
-         (outer.target && (inner.target || inner.name == "urethra")) ||
-         (outer.name == "rectum" && inner.name == "rectal_lumen");
 }
 
 }  // namespace

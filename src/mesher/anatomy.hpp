@@ -47,6 +47,10 @@ struct Anatomy {
   /// Signed distance [mm] between p and the surface between two labels (0 = outside); negative on the side of the label
   /// with higher priority.
   [[nodiscard]] double interface_distance(int label_a, int label_b, const Vec3& p) const;
+  /// Signed distance [mm] between p and the surface of a structure without the parts that other structures take;
+  /// negative inside. What belongs inside it, as the urethra does in the gland, takes no part of it. Exact near that
+  /// surface, but where surfaces meet.
+  [[nodiscard]] double distance_to(int structure, const Vec3& p) const;
   /// p moved onto the surface between two labels.
   [[nodiscard]] Vec3 project(int label_a, int label_b, Vec3 p) const;
   /// Number of the layer to which a label belongs, -1 = none.

@@ -6,6 +6,7 @@
 #include "local_changes.hpp"
 #include "mesh_report.hpp"
 #include "pieces.hpp"
+#include "region_surfaces.hpp"
 #include "seeds.hpp"
 #include "sizing.hpp"
 #include "volume_fit.hpp"
@@ -138,6 +139,14 @@ Result<TetMesh> to_mesh(const RawMesh& raw, Anatomy& a) {
   return m;
 }
 
+/// The anatomy for pictures: organs as they were given, and the body as it is meshed, since a needle meets the skin
+/// there.
+Anatomy as_drawn(const Anatomy& given, const Anatomy& meshed) {
+  Anatomy drawn = given;
+  drawn.layers.back().offset = meshed.layers.back().offset;
+  return drawn;
+}
+
 Result<MeshedAnatomy> mesh(Anatomy a, const MeshOptions& options, const Progress& progress) {
   const Index preset = options.preset == MeshPreset::paper ? kPaperNodes : kStandardNodes;
   const Index wanted = options.nodes > 0 ? options.nodes : preset;
@@ -157,6 +166,7 @@ Result<MeshedAnatomy> mesh(Anatomy a, const MeshOptions& options, const Progress
   MeshedAnatomy out;
   out.mesh = *std::move(done);
   out.report = report_on(out.mesh, best->anatomy);
+  out.mesh.surfaces = region_surfaces(as_drawn(a, best->anatomy), out.mesh.regions, progress);
   report(progress, "measuring the mesh", 1.0);
   return out;
 }

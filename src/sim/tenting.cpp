@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/sim/tenting.hpp"
 
+#include "stylet/fem/material.hpp"
+
 #include "stylet/coupling/near_field/needle_kernel.hpp"
 #include "stylet/coupling/tip_dent.hpp"
 

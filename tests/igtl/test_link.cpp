@@ -10,6 +10,7 @@
 using namespace stylet;
 using namespace stylet::igtl;
 using namespace stylet::test;
+using TissueSurface = stylet::igtl::Surface;
 
 namespace {
 
@@ -25,18 +26,18 @@ Picture picture(double time_s) {
 }
 
 /// A grid of n × n points in the plane z.
-Surface net(std::uint32_t n, float z) {
-  Surface s;
+TissueSurface net(std::uint32_t n, float z) {
+  TissueSurface s;
   for (std::uint32_t i = 0; i < n * n; ++i)
     s.points.push_back({static_cast<float>(i / n), static_cast<float>(i % n), z});
-  Surface::Triangles triangles;
+  TissueSurface::Triangles triangles;
   for (std::uint32_t i = 0; i + 1 < n; ++i)
     for (std::uint32_t j = 0; j + 1 < n; ++j) {
       const std::uint32_t k = i * n + j;
       triangles.push_back({k, k + n, k + 1});
       triangles.push_back({k + 1, k + n, k + n + 1});
     }
-  s.triangles = std::make_shared<const Surface::Triangles>(std::move(triangles));
+  s.triangles = std::make_shared<const TissueSurface::Triangles>(std::move(triangles));
   return s;
 }
 
@@ -476,13 +477,13 @@ TEST(Link, settings_out_of_range_are_refused) {
 
 TEST(Link, surfaces_that_are_none_are_refused) {
   const auto link = opened(any_port());
-  Surface s = net(3, 0.0F);
+  TissueSurface s = net(3, 0.0F);
   s.points.pop_back();
   const auto missing = link->publish_surface(std::move(s));
   ASSERT_FALSE(missing);
   EXPECT_NE(missing.error().what.find("the corner 8, but there are 8 points"), std::string::npos)
       << missing.error().message();
-  Surface large;
+  TissueSurface large;
   large.points.resize(6'000'000);
   EXPECT_FALSE(link->publish_surface(std::move(large)));
   EXPECT_TRUE(link->publish_surface({}).ok()) << "an empty one shows that there is none any more";

@@ -18,6 +18,7 @@
 using namespace stylet;
 using namespace stylet::igtl;
 using namespace stylet::test;
+using TissueSurface = stylet::igtl::Surface;
 
 namespace {
 
@@ -106,9 +107,9 @@ TEST(MessageWriter, points) {
 }
 
 TEST(MessageWriter, surface) {
-  Surface surface;
+  TissueSurface surface;
   surface.points = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}};
-  surface.triangles = std::make_shared<const Surface::Triangles>(Surface::Triangles{{0, 2, 1}, {0, 1, 3}});
+  surface.triangles = std::make_shared<const TissueSurface::Triangles>(TissueSurface::Triangles{{0, 2, 1}, {0, 1, 3}});
   Bytes bytes;
   add_surface(bytes, "TissueSurface", surface);
   // The library's class for this message leaks memory, so its C functions are used.

@@ -3,6 +3,7 @@
 
 #include "stylet/core/result.hpp"
 #include "stylet/core/types.hpp"
+#include "stylet/geom/surface.hpp"
 
 #include <array>
 #include <string>
@@ -16,6 +17,10 @@ struct TetMesh {
   std::vector<std::array<Index, 4>> tets;  ///< (m) node numbers; the volume is positive: det(x1-x0, x2-x0, x3-x0) > 0
   std::vector<int> tet_region;             ///< (m) index in `regions`
   std::vector<std::string> regions;        ///< names of the regions, e.g. "prostate", "body"
+  /// (regions) The structures as they were given, for pictures: closed, with normals outwards, whatever the size of the
+  /// elements. Where two overlap, the region that comes first in `regions` is meant. Empty: pictures show the faces of
+  /// the elements.
+  std::vector<Surface> surfaces;
 
   [[nodiscard]] Index node_count() const { return static_cast<Index>(nodes.size()); }
   [[nodiscard]] Index tet_count() const { return static_cast<Index>(tets.size()); }

@@ -42,7 +42,8 @@ void fields(auto& wire, ContourSet& s) {
 void fields(auto& wire, LabelImage& i) {
   wire(i.source, i.size, i.origin, i.spacing, i.direction, i.labels, i.names, i.meanings, i.notes);
 }
-void fields(auto& wire, TetMesh& m) { wire(m.nodes, m.tets, m.tet_region, m.regions); }
+void fields(auto& wire, Surface& s) { wire(s.name, s.points, s.triangles); }
+void fields(auto& wire, TetMesh& m) { wire(m.nodes, m.tets, m.tet_region, m.regions, m.surfaces); }
 void fields(auto& wire, MeshWithNotes& m) { wire(m.mesh, m.notes); }
 void fields(auto& wire, PlannedSource& s) {
   wire(s.at_mm, s.axis, s.has_axis, s.strength_U, s.dwell_s, s.over_s, s.kind, s.needle);
@@ -72,7 +73,6 @@ void fields(auto& wire, FoundPatient& p) {
        p.study_description, p.accession_number, p.referring_physician, p.frame_of_reference, p.position_reference,
        p.structure_set, p.notes);
 }
-void fields(auto& wire, Surface& s) { wire(s.name, s.points, s.triangles); }
 void fields(auto& wire, SurfacesWithNotes& s) { wire(s.surfaces, s.notes); }
 
 /// Types of plain numbers without padding, which are copied byte by byte.

@@ -6,7 +6,7 @@
 /// The format of a model file (docs/models.md), shared by its writer and its reader.
 namespace stylet::detail {
 
-inline constexpr int kModelFileVersion = 3;
+inline constexpr int kModelFileVersion = 4;
 inline constexpr const char* kModelFileFormat = "stylet-model";
 inline constexpr const char* kModelExtension = ".stylet";
 /// Number of columns of the compliance that are written and read at once.

@@ -92,6 +92,14 @@ class Reader {
     for (std::size_t k = 0; k < tets.size(); k += 4)
       mesh.tets.push_back({tets[k], tets[k + 1], tets[k + 2], tets[k + 3]});
     mesh.regions = texts("/mesh/regions");
+    if (has("/mesh/surface_sizes")) {
+      auto surfaces = unflatten(
+          {numbers<float>("/mesh/surface_points_mm", {0, 3}), numbers<Index>("/mesh/surface_triangles", {0, 3}),
+           numbers<Index>("/mesh/surface_sizes", {mesh.regions.size(), 2})},
+          mesh.regions);
+      demand(surfaces.has_value(), "/mesh/surface_points_mm");
+      mesh.surfaces = *std::move(surfaces);
+    }
     return mesh;
   }
 

@@ -51,6 +51,9 @@ std::string index_of(hid_t file, const ModelFile& content) {
                                  "/compliance/blocks_mm_per_N",
                                  "/compliance/near_field_mm_per_N",
                                  "/compliance/spread_mm_per_N"};
+  if (!content.mesh.surfaces.empty()) {
+    for (const char* name : {"points_mm", "triangles", "sizes"}) names.push_back(fmt::format("/mesh/surface_{}", name));
+  }
   for (std::size_t i = 0; i < content.motions.size(); ++i) names.push_back(fmt::format("/motions/{}", i));
   nlohmann::ordered_json arrays;
   for (const std::string& name : names) {

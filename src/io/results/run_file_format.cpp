@@ -24,6 +24,12 @@ std::string start_digest(const RunInfo& info, const TetMesh& mesh) {
   digest.add_bytes(mesh.tets.data(), mesh.tets.size() * sizeof(mesh.tets[0]));
   digest.add(std::span<const int>(mesh.tet_region));
   add(mesh.regions);
+  if (!mesh.surfaces.empty()) {  // earlier versions have none
+    const FlatSurfaces flat = flatten(mesh.surfaces);
+    digest.add_bytes(flat.points_mm.data(), flat.points_mm.size() * sizeof(float));
+    digest.add(std::span<const Index>(flat.triangles));
+    digest.add(std::span<const Index>(flat.sizes));
+  }
   return digest.finish();
 }
 

@@ -81,9 +81,17 @@ TEST_P(SavedModels, step_as_the_compiled_one_to_the_last_bit_without_a_factor) {
   const Folder folder;
   Scenario scenario = saved_box();
   scenario.tissue_model.element = choice<ElementChoice>(GetParam()).value();
-  const auto compiled = test::compiled(scenario, test::box_patient());
+  TetMesh patient = test::box_patient();
+  for (const std::string& region : patient.regions)
+    patient.surfaces.push_back({region, {{0, 0, 0}, {1, 0, 0}, {0, 1.5, 0}, {0, 0, 2}}, {{0, 2, 1}, {0, 1, 3}}});
+  const auto compiled = test::compiled(scenario, patient);
   save(*compiled, folder / "box.stylet");
   const auto model = loaded(folder / "box.stylet");
+  ASSERT_EQ(model->mesh().surfaces.size(), patient.surfaces.size());
+  for (std::size_t r = 0; r < patient.surfaces.size(); ++r) {
+    EXPECT_EQ(model->mesh().surfaces[r].points, patient.surfaces[r].points);
+    EXPECT_EQ(model->mesh().surfaces[r].triangles, patient.surfaces[r].triangles);
+  }
   EXPECT_EQ(model->store()->blocks(), compiled->store()->blocks());
   EXPECT_EQ(model->scenario(), compiled->scenario());
   EXPECT_EQ(run_of(model), run_of(compiled));

@@ -31,10 +31,28 @@ int flips() {
   return wanted == nullptr ? 60 : std::atoi(wanted);
 }
 
+/// A closed surface. @param x_mm of its middle
+Surface octahedron(const std::string& name, double x_mm) {
+  const Vec3 middle(x_mm, 0.25, 0.0);
+  Surface s{.name = name, .points = {}, .triangles = {}};
+  for (int k = 0; k < 3; ++k) {
+    for (const double side : {1.0, -1.0}) s.points.emplace_back(middle + side * Vec3::Unit(k));
+  }
+  s.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+  return s;
+}
+
+/// A run whose mesh has a surface for each region.
+SyntheticRun with_surfaces(SyntheticRun run) {
+  for (std::size_t r = 0; r < run.mesh.regions.size(); ++r)
+    run.mesh.surfaces.push_back(octahedron(run.mesh.regions[r], static_cast<double>(10 * r)));
+  return run;
+}
+
 }  // namespace
 
 TEST(RunFile, holds_everything_that_was_written) {
-  const auto run = synthetic_run();
+  const auto run = with_surfaces(synthetic_run());
   const Folder folder;
   {
     auto writer = value_of(RunFileWriter::create(folder / "run.h5", run.info, run.mesh));
@@ -49,6 +67,12 @@ TEST(RunFile, holds_everything_that_was_written) {
   EXPECT_EQ(back.mesh.tets, run.mesh.tets);
   EXPECT_EQ(back.mesh.tet_region, run.mesh.tet_region);
   EXPECT_EQ(back.mesh.regions, run.mesh.regions);
+  ASSERT_EQ(back.mesh.surfaces.size(), run.mesh.surfaces.size());
+  for (std::size_t r = 0; r < run.mesh.surfaces.size(); ++r) {
+    EXPECT_EQ(back.mesh.surfaces[r].name, run.mesh.regions[r]);
+    EXPECT_EQ(back.mesh.surfaces[r].points, run.mesh.surfaces[r].points);
+    EXPECT_EQ(back.mesh.surfaces[r].triangles, run.mesh.surfaces[r].triangles);
+  }
   RunRecording written = recording_of(run);
   written.events = run.summary.events;
   expect_same_run(written, back);
@@ -292,7 +316,7 @@ TEST(RunFile, whose_scenario_has_no_insertion_is_refused) {
 }
 
 TEST(RunFile, with_any_bit_changed_is_refused_or_reads_as_it_was_written) {
-  const auto run = small_run();
+  const auto run = with_surfaces(small_run());
   const Folder folder;
   const fs::path path = folder / "flipped.h5";
   std::mt19937 random(20051026);

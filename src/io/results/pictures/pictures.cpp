@@ -3,6 +3,7 @@
 
 #include "detail/child.hpp"
 #include "pictures/canvas.hpp"
+#include "pictures/shapes.hpp"
 #include "pictures/views.hpp"
 #include "stylet/core/survive.hpp"
 
@@ -104,7 +105,8 @@ std::span<const char* const> picture_names() { return kNames; }
 
 Pictures draw_pictures(const RunRecording& run, std::span<const RegionView> regions, const Moments& moments,
                        const Progress& progress) {
-  const PictureInput input{run, regions, run.frames[moments.deepest]};
+  const std::vector<TiedSurface> surfaces = shown_surfaces(run.mesh, regions);
+  const PictureInput input{run, regions, surfaces, run.frames[moments.deepest]};
   const std::vector<Drawing> list = drawings(input, moments);
   // The pictures of one moment: few OpenGL contexts to set up, and still visible progress.
   constexpr std::size_t kPerChild = 3;

@@ -13,10 +13,16 @@
 #include <vtkTubeFilter.h>
 #include <vtkUnstructuredGrid.h>
 
+#include "stylet/geom/topology.hpp"
+
 #include <algorithm>
+#include <utility>
 
 namespace stylet::results {
 
+namespace {
+
+/// Node positions moved by `displacement` [mm] (3n).
 vtkSmartPointer<vtkPoints> deformed_points(const TetMesh& mesh, const VecX& displacement) {
   auto points = vtkSmartPointer<vtkPoints>::New();
   points->SetDataTypeToDouble();
@@ -27,6 +33,8 @@ vtkSmartPointer<vtkPoints> deformed_points(const TetMesh& mesh, const VecX& disp
   }
   return points;
 }
+
+}  // namespace
 
 vtkSmartPointer<vtkUnstructuredGrid> deformed_grid(const TetMesh& mesh, const VecX& displacement) {
   auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
@@ -47,14 +55,34 @@ vtkSmartPointer<vtkUnstructuredGrid> deformed_grid(const TetMesh& mesh, const Ve
   return grid;
 }
 
-vtkSmartPointer<vtkPolyData> region_surface(const RegionView& view, vtkPoints* points) {
-  auto faces = vtkSmartPointer<vtkPolyData>::New();
-  faces->SetPoints(points);
+std::vector<TiedSurface> shown_surfaces(const TetMesh& mesh, std::span<const RegionView> regions) {
+  std::vector<TiedSurface> shown;
+  if (!mesh.surfaces.empty()) {
+    const Topology topology(mesh);
+    std::vector<TiedSurface> tied = tie_surfaces(Locator(mesh, topology));
+    for (const RegionView& view : regions) shown.push_back(std::move(tied[static_cast<std::size_t>(view.region)]));
+    return shown;
+  }
+  for (const RegionView& view : regions) {
+    TiedSurface faces{.region = view.region, .nodes = {}, .weights = {}, .triangles = view.triangles};
+    for (Index n = 0; n < mesh.node_count(); ++n) faces.nodes.push_back({n, n, n, n});
+    faces.weights.assign(mesh.nodes.size(), Vec4::UnitX());
+    shown.push_back(std::move(faces));
+  }
+  return shown;
+}
+
+vtkSmartPointer<vtkPolyData> moved(const TiedSurface& surface, const TetMesh& mesh, const VecX& displacement) {
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (const Vec3& x : surface.positions(mesh, displacement)) points->InsertNextPoint(x.data());
   vtkNew<vtkCellArray> cells;
-  for (const auto& t : view.triangles) {
+  for (const auto& t : surface.triangles) {
     const std::array<vtkIdType, 3> corners{t[0], t[1], t[2]};
     cells->InsertNextCell(3, corners.data());
   }
+  auto faces = vtkSmartPointer<vtkPolyData>::New();
+  faces->SetPoints(points);
   faces->SetPolys(cells);
   return faces;
 }

@@ -11,6 +11,8 @@
 #include <vtkProperty.h>
 #include <vtkRenderer.h>
 
+#include <algorithm>
+
 namespace stylet::results {
 namespace {
 
@@ -18,10 +20,12 @@ namespace {
 std::vector<Vec3> places_of_interest(const PictureInput& input) {
   const bool only_background = input.regions.size() == 1;
   std::vector<Vec3> places;
-  for (const RegionView& view : input.regions) {
-    if (view.background && !only_background) continue;
-    for (const auto& t : view.triangles) {
-      for (const Index n : t) places.push_back(input.run.mesh.nodes[static_cast<std::size_t>(n)]);
+  const VecX at_rest = VecX::Zero(3 * input.run.mesh.node_count());
+  for (std::size_t r = 0; r < input.regions.size(); ++r) {
+    if (input.regions[r].background && !only_background) continue;
+    const std::vector<Vec3> points = input.surfaces[r].positions(input.run.mesh, at_rest);
+    for (const auto& t : input.surfaces[r].triangles) {
+      for (const Index n : t) places.push_back(points[static_cast<std::size_t>(n)]);
     }
   }
   const Vec3& entry = input.run.info.entry_mm;
@@ -48,9 +52,9 @@ Layers view_3d(const PictureInput& input, const Frame& frame) {
   stage->UseDepthPeelingOn();
   stage->SetMaximumNumberOfPeels(16);
   stage->SetOcclusionRatio(0.0);
-  const auto points = deformed_points(input.run.mesh, frame.displacement);
-  for (const RegionView& view : input.regions) {
-    const auto surface = region_surface(view, points);
+  for (std::size_t r = 0; r < input.regions.size(); ++r) {
+    const RegionView& view = input.regions[r];
+    const auto surface = moved(input.surfaces[r], input.run.mesh, frame.displacement);
     vtkActor* actor = add_surface(stage, with_normals(surface), view.colour, view.opacity);
     actor->GetProperty()->BackfaceCullingOn();  // as in the interactive view
     vtkNew<vtkPolyDataSilhouette> silhouette;
@@ -60,7 +64,7 @@ Layers view_3d(const PictureInput& input, const Frame& frame) {
     silhouette->BorderEdgesOff();
     silhouette->Update();
     vtkActor* outline = add_lines(stage, silhouette->GetOutput(), lighter(view.colour, -0.35), 1.5);
-    outline->GetProperty()->SetOpacity(view.background ? 0.25 : 0.5);
+    outline->GetProperty()->SetOpacity(std::min(0.5, 2.5 * view.opacity));
   }
   if (frame.needle.size() >= 2) {
     vtkActor* needle = add_surface(stage, needle_tube(frame.needle, input.run.info.needle_diameter_mm), kSteel, 1.0);

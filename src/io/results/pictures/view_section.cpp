@@ -5,18 +5,19 @@
 #include <vtkActor.h>
 #include <vtkCellData.h>
 #include <vtkContourFilter.h>
+#include <vtkContourTriangulator.h>
 #include <vtkCutter.h>
 #include <vtkDataArray.h>
 #include <vtkLookupTable.h>
 #include <vtkNew.h>
 #include <vtkPlane.h>
 #include <vtkPointData.h>
-#include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkRegularPolygonSource.h>
 #include <vtkRenderer.h>
+#include <vtkStripper.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 
@@ -29,7 +30,15 @@ namespace {
 
 // Offsets of the layers towards the viewer [mm], which determine what covers what. Since the projection is parallel,
 // they move nothing in the picture.
-constexpr double kInitialLayer = 0.5, kOutlineLayer = 1.0, kNeedleLayer = 60.0;
+constexpr double kInitialLayer = 0.5, kOutlineLayer = 1.0, kRegionLayers = 30.0, kNeedleLayer = 60.0;
+
+enum class Drawn { fill, outline_at_rest, outline };
+
+/// The layer of a part of a region's drawing: all parts of a region that comes first lie on top of those of others.
+double layer_of(Drawn part, std::size_t region, std::size_t regions) {
+  const double below = static_cast<double>(regions - 1 - region) + static_cast<double>(part) / 3.0;
+  return kRegionLayers * below / static_cast<double>(regions);
+}
 
 vtkSmartPointer<vtkPolyData> cut(vtkDataSet* data, const Section& section) {
   vtkNew<vtkPlane> plane;
@@ -100,10 +109,10 @@ constexpr Area kSectionArea{0.055, 0.085, 0.945, 0.925}, kMapArea{0.055, 0.085, 
 /// The framing that shows the organs, and the needle's path if it lies in the plane.
 Framing framing_of(const PictureInput& input, const Section& section, const Area& area) {
   std::vector<Vec3> places;
-  const auto points = deformed_points(input.run.mesh, VecX::Zero(3 * input.run.mesh.node_count()));
-  for (const RegionView& view : input.regions) {
-    if (view.background && input.regions.size() > 1) continue;
-    const auto outline = cut(region_surface(view, points), section);
+  const VecX at_rest = VecX::Zero(3 * input.run.mesh.node_count());
+  for (std::size_t r = 0; r < input.regions.size(); ++r) {
+    if (input.regions[r].background && input.regions.size() > 1) continue;
+    const auto outline = cut(moved(input.surfaces[r], input.run.mesh, at_rest), section);
     for (vtkIdType n = 0; n < outline->GetNumberOfPoints(); ++n) places.emplace_back(outline->GetPoint(n));
   }
   if (std::abs(input.run.info.direction.dot(section.view.towards_viewer)) <= 0.7) {
@@ -114,6 +123,40 @@ Framing framing_of(const PictureInput& input, const Section& section, const Area
   Framing framing = frame_points(places, section.view, area, 0.12);
   framing.centre += (section.origin - framing.centre).dot(section.view.towards_viewer) * section.view.towards_viewer;
   return framing;
+}
+
+Colour fill_of(const RegionView& view) { return lighter(view.colour, view.background ? 0.72 : 0.5); }
+
+/// Fills the regions element by element.
+void fill_elements(vtkRenderer* stage, const PictureInput& input, const Frame& frame, const Section& section) {
+  const auto fill = cut(deformed_grid(input.run.mesh, frame.displacement), section);
+  vtkNew<vtkUnsignedCharArray> colours;
+  colours->SetNumberOfComponents(3);
+  vtkDataArray* region = fill->GetCellData()->GetArray("region");
+  for (vtkIdType c = 0; c < fill->GetNumberOfCells(); ++c) {
+    const auto is_it = [&](const RegionView& v) { return v.region == static_cast<int>(region->GetTuple1(c)); };
+    const auto view = std::find_if(input.regions.begin(), input.regions.end(), is_it);
+    const Colour colour = fill_of(*view);
+    for (const double part : colour) colours->InsertNextValue(static_cast<unsigned char>(std::lround(255 * part)));
+  }
+  fill->GetCellData()->SetScalars(colours);
+  vtkActor* filled = add_flat(stage, fill, kWhite);
+  filled->GetMapper()->ScalarVisibilityOn();
+  filled->GetMapper()->SetScalarModeToUseCellData();
+}
+
+/// Fills the outlines of the regions' surfaces, those that come first on top.
+void fill_outlines(vtkRenderer* stage, const PictureInput& input, const Frame& frame, const Section& section) {
+  for (std::size_t r = 0; r < input.regions.size(); ++r) {
+    vtkNew<vtkStripper> lines;
+    lines->SetInputData(cut(moved(input.surfaces[r], input.run.mesh, frame.displacement), section));
+    lines->JoinContiguousSegmentsOn();
+    vtkNew<vtkContourTriangulator> areas;
+    areas->SetInputConnection(lines->GetOutputPort());
+    areas->Update();
+    lift(add_flat(stage, areas->GetOutput(), fill_of(input.regions[r])), section,
+         layer_of(Drawn::fill, r, input.regions.size()));
+  }
 }
 
 vtkSmartPointer<vtkRenderer> make_marked_page(const Framing& framing, const Section& section, const Area& area) {
@@ -159,31 +202,24 @@ Layers view_section(const PictureInput& input, const Frame& frame, const Section
   const auto stage = make_stage(section.view, framing, kSectionArea);
   const TetMesh& mesh = input.run.mesh;
 
-  const auto fill = cut(deformed_grid(mesh, frame.displacement), section);
-  vtkNew<vtkUnsignedCharArray> colours;
-  colours->SetNumberOfComponents(3);
-  vtkDataArray* region = fill->GetCellData()->GetArray("region");
-  for (vtkIdType c = 0; c < fill->GetNumberOfCells(); ++c) {
-    const auto is_it = [&](const RegionView& v) { return v.region == static_cast<int>(region->GetTuple1(c)); };
-    const auto view = std::find_if(input.regions.begin(), input.regions.end(), is_it);
-    const Colour colour = lighter(view->colour, view->background ? 0.72 : 0.5);
-    for (const double part : colour) colours->InsertNextValue(static_cast<unsigned char>(std::lround(255 * part)));
+  if (mesh.surfaces.empty()) {
+    fill_elements(stage, input, frame, section);
+  } else {
+    fill_outlines(stage, input, frame, section);
   }
-  fill->GetCellData()->SetScalars(colours);
-  vtkActor* filled = add_flat(stage, fill, kWhite);
-  filled->GetMapper()->ScalarVisibilityOn();
-  filled->GetMapper()->SetScalarModeToUseCellData();
 
-  const auto initial = deformed_points(mesh, VecX::Zero(3 * mesh.node_count()));
-  const auto deformed = deformed_points(mesh, frame.displacement);
-  const bool moved = frame.displacement.lpNorm<Eigen::Infinity>() > 0.05;
-  for (const RegionView& view : input.regions) {
-    if (moved && !view.background) {
-      lift(add_lines(stage, cut(region_surface(view, initial), section), kPale, 1.5), section, kInitialLayer);
+  const VecX at_rest = VecX::Zero(3 * mesh.node_count());
+  const bool is_moved = frame.displacement.lpNorm<Eigen::Infinity>() > 0.05;
+  for (std::size_t r = 0; r < input.regions.size(); ++r) {
+    const RegionView& view = input.regions[r];
+    if (is_moved && !view.background) {
+      lift(add_lines(stage, cut(moved(input.surfaces[r], mesh, at_rest), section), kPale, 1.5), section,
+           layer_of(Drawn::outline_at_rest, r, input.regions.size()));
     }
     const Colour ink = lighter(view.colour, view.background ? -0.25 : -0.4);
-    lift(add_lines(stage, cut(region_surface(view, deformed), section), ink, view.target ? 4.0 : 2.5), section,
-         kOutlineLayer);
+    lift(add_lines(stage, cut(moved(input.surfaces[r], mesh, frame.displacement), section), ink,
+                   view.target ? 4.0 : 2.5),
+         section, layer_of(Drawn::outline, r, input.regions.size()));
   }
   add_needle(stage, input, frame, section);
   return {make_marked_page(framing, section, kSectionArea), stage};
@@ -215,10 +251,9 @@ Layers view_displacement(const PictureInput& input, const Frame& frame, const Se
   thin->GetProperty()->SetOpacity(0.45);
   lift(thin, section, kInitialLayer);
 
-  const auto deformed = deformed_points(mesh, frame.displacement);
-  for (const RegionView& view : input.regions) {
-    const auto outline = cut(region_surface(view, deformed), section);
-    lift(add_lines(stage, outline, kWhite, view.target ? 3.5 : 2.0), section, kOutlineLayer);
+  for (std::size_t r = 0; r < input.regions.size(); ++r) {
+    const auto outline = cut(moved(input.surfaces[r], mesh, frame.displacement), section);
+    lift(add_lines(stage, outline, kWhite, input.regions[r].target ? 3.5 : 2.0), section, kOutlineLayer);
   }
   add_needle(stage, input, frame, section);
   const auto page = make_marked_page(framing, section, kMapArea);

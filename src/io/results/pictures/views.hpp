@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pictures/stage.hpp"
+#include "stylet/geom/tied_surface.hpp"
 #include "stylet/io/recording_io.hpp"
 
 /// The views that the pictures of a report show. Every function makes one stage, ready to draw.
@@ -11,7 +12,8 @@ namespace stylet::results {
 struct PictureInput {
   const RunRecording& run;
   std::span<const RegionView> regions;
-  const Frame& deepest;  ///< determines the framing and the range of the displacement colours
+  std::span<const TiedSurface> surfaces;  ///< (regions)
+  const Frame& deepest;                   ///< determines the framing and the range of the displacement colours
 };
 
 /// A plane through the anatomy, seen from one side.
