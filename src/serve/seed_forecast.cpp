@@ -26,18 +26,15 @@ bool SeedForecast::take(const Vec3& now) {
   unanswered_ = 0;
   const Vec3 off = now_->place - now;
   // Right beside the needle the displacement changes within its radius, and full steps may overshoot.
-  const bool overshot = away_mm_ >= 0.0 && off.norm() > 0.9 * away_mm_;
-  step_ = overshot ? std::max(kLeastStep, 0.7 * step_) : std::min(1.0, 1.3 * step_);
-  away_mm_ = off.norm();
-  if (away_mm_ < kExact_mm) {
-    step_ = 1.0;
-    return false;
-  }
+  const bool overshot = off_ && off.dot(*off_) < 0.0;
+  step_ = overshot ? std::max(kLeastStep, 0.5 * step_) : std::min(1.0, 1.3 * step_);
+  off_ = off;
+  if (off.norm() < kExact_mm) return false;
   *x_ += step_ * off;
   return true;
 }
 
-std::optional<Vec3> SeedForecast::rest() const { return away_mm_ >= 0.0 && away_mm_ < kKnown_mm ? x_ : std::nullopt; }
+std::optional<Vec3> SeedForecast::rest() const { return off_ && off_->norm() < kKnown_mm ? x_ : std::nullopt; }
 
 std::optional<double> SeedForecast::off_mm() const {
   const auto found = rest();

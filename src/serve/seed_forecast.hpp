@@ -32,9 +32,9 @@ class SeedForecast {
  private:
   std::optional<Places> now_;
   std::optional<Vec3> x_;
-  double step_ = 1.0;    ///< share of a full step
-  double away_mm_ = -1;  ///< distance of point() from the place at the last answer; negative: no answer
-  int unanswered_ = 0;   ///< calls of aim() since the last answer
+  std::optional<Vec3> off_;  ///< [mm] from where point() was to the place, at the last answer; empty: no answer
+  double step_ = 1.0;        ///< share of a full step
+  int unanswered_ = 0;       ///< calls of aim() since the last answer
 };
 
 }  // namespace stylet::serve

@@ -77,8 +77,10 @@ TEST(RegionColours, no_two_organs_of_a_patient_look_alike_with_any_colour_vision
                                "periprostatic_fat", "ischiorectal_fat", "subcutaneous_fat"});
   ASSERT_EQ(views.size(), 10U);
   for (std::size_t a = 1; a < views.size(); ++a) {
-    for (std::size_t b = 0; b < a; ++b)
+    for (std::size_t b = 0; b < a; ++b) {
+      if (views[a].background || views[b].background) continue;  // drawn as a hint of flesh around the organs
       EXPECT_GT(distance(views[a].colour, views[b].colour), 12.0) << views[a].name << " and " << views[b].name;
+    }
   }
 }
 

@@ -19,10 +19,11 @@ export function computerFacts(frame: Frame | null, status: Status | null): strin
 
 export class ComputerDetails {
   readonly box = element('details', 'computer');
+  private readonly lines = element('div');
   private written = '';
 
   constructor() {
-    this.box.append(element('summary', '', 'Computer'));
+    this.box.append(element('summary', '', 'Computer'), this.lines);
     this.box.title = 'How the computer keeps up with the needle';
   }
 
@@ -30,6 +31,6 @@ export class ComputerDetails {
     const text = lines.join('\n');
     if (text === this.written) return;
     this.written = text;
-    this.box.replaceChildren(this.box.firstElementChild!, ...lines.map((line) => element('p', '', line)));
+    this.lines.replaceChildren(...lines.map((line) => element('p', '', line)));
   }
 }

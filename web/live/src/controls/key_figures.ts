@@ -102,12 +102,13 @@ export class KeyFigures {
   private readonly shift = new Figure('Gland shift', 'mm');
   private readonly turn = new Figure('Gland turn', '°');
   private readonly tip = new Figure('Tip off its target', 'mm');
-  private readonly seed = new Figure('Seed dropped here off', 'mm');
+  private readonly seed = new Figure('A seed dropped here rests off by', 'mm');
   private largest = 0;  // [N] peak force
   private gland: GlandFit | null = null;
   private hasMoved = false;  // a displacement has arrived, so that the gland's motion is known
 
   constructor(root: HTMLElement, private readonly session: Session) {
+    this.seed.box.classList.add('wide');
     root.append(this.peak.box, this.shift.box, this.turn.box, this.tip.box, this.seed.box);
     const write = onRepaintEvery(WRITE_EVERY_MS, () => this.write());
     session.on('scene', (scene) => {

@@ -158,10 +158,10 @@ export class PushBar {
     const seeds = seedDepths(this.session.plan, this.session.implant);
     if (seeds) this.drawSeeds(seeds, middle, text);
     else if (planned !== undefined) this.flag(planned, middle, 'planned depth', SOFT, text);
-    for (const event of withWords(this.session.events)) {
-      if (event.depth_mm > high) continue;
-      if (saysHarm(event)) this.flag(event.depth_mm, middle, event.label, HARM, text);
-      else if (event.kind === MARKED) this.flag(event.depth_mm, middle, event.label, INK, text);
+    const events = withWords(this.session.events).filter((event) => event.depth_mm <= high);
+    for (const event of events) if (saysHarm(event)) this.flag(event.depth_mm, middle, event.label, HARM, text);  // first, for room
+    for (const event of events) {
+      if (event.kind === MARKED && !saysHarm(event)) this.flag(event.depth_mm, middle, event.label, INK, text);
     }
     bar(low, frame.depth, steering ? ACCENT : SOFT, 0.34 * text);
     const target = this.hand.target.depth;
