@@ -7,6 +7,7 @@
 #include "recorded_run.hpp"
 #include "table.hpp"
 
+#include "stylet/io/event_words.hpp"
 #include "stylet/io/hole_map_io.hpp"
 #include "stylet/io/model_file.hpp"
 #include "stylet/io/scenario_io.hpp"
@@ -74,14 +75,6 @@ std::string mesh_changes_text(const Summary& summary) {
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 
-std::string title(EventKind kind, const std::string& region) {
-  std::string text = to_string(kind);
-  for (char& c : text) c = c == '_' ? ' ' : c;
-  std::string name = region;
-  for (char& c : name) c = c == '_' ? ' ' : c;
-  return region.empty() ? text : text + " (" + name + ")";
-}
-
 /// A number with three decimals; a number that rounds to 0 has no sign.
 std::string thousandths(double value) { return fmt::format("{:.3f}", std::abs(value) < 5e-4 ? 0.0 : value); }
 
@@ -108,11 +101,14 @@ std::string gland_text(const GlandMotion& gland) {
 
 std::string summary_text(const Summary& summary) {
   Table events({"event", "time [s]", "base depth [mm]", "axial force [N]"});
+  results::EventWords words;
   for (const Event& event : summary.events) {
+    const std::string what = words.clause(event);
+    if (what.empty()) continue;  // the puncture at the same place has been said
     // A force that rounds to 0 has no sign.
     const double force = std::abs(event.force_N) < 5e-4 ? 0.0 : event.force_N;
-    events.row({title(event.kind, event.region), fmt::format("{:.3f}", event.time_s),
-                fmt::format("{:.2f}", event.depth_mm), fmt::format("{:.3f}", force)});
+    events.row({what, fmt::format("{:.3f}", event.time_s), fmt::format("{:.2f}", event.depth_mm),
+                fmt::format("{:.3f}", force)});
   }
   Facts facts;
   facts.add("peak force", fmt::format("axial {:.2f} N, sagittal {:.3f} N, lateral {:.3f} N", summary.peak_axial_N,
@@ -125,7 +121,7 @@ std::string summary_text(const Summary& summary) {
   }
   if (summary.tip_error_mm) {
     const Vec3& error = *summary.tip_error_mm;
-    facts.add("tip error",
+    facts.add("tip off its target",
               fmt::format("{:.2f} mm in the tissue (left {:.2f}, posterior {:.2f}, superior {:.2f}), at the "
                           "deepest point",
                           error.norm(), error.x(), error.y(), error.z()));
@@ -138,7 +134,7 @@ std::string summary_text(const Summary& summary) {
                           held.shift_mm->norm(), held.shift_max_mm->norm());
     }
     if (held.tip_error_mm)
-      text += fmt::format("; tip error from the tissue as they hold it: {:.2f} mm", held.tip_error_mm->norm());
+      text += fmt::format("; tip off its target in the tissue as they hold it: {:.2f} mm", held.tip_error_mm->norm());
     facts.add("needles in place", text);
   }
   facts.add("tip deflection", fmt::format("at most {:.2f} mm", summary.tip_deflection_mm));

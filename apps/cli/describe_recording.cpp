@@ -2,6 +2,7 @@
 #include "describe.hpp"
 #include "table.hpp"
 
+#include "stylet/io/event_words.hpp"
 #include "stylet/sim/recorded_steps.hpp"
 
 #include <fmt/format.h>
@@ -44,10 +45,13 @@ Json events_json(const std::vector<Event>& events) {
 }
 
 std::string events_text(const std::vector<Event>& events) {
-  Table table({"event", "region", "time s", "depth mm", "force N"});
+  Table table({"event", "time s", "depth mm", "force N"});
+  results::EventWords words;
   for (const Event& event : events) {
-    table.row({to_string(event.kind), event.region, fmt::format("{:.3f}", event.time_s),
-               fmt::format("{:.2f}", event.depth_mm), fmt::format("{:.3f}", event.force_N)});
+    const std::string what = words.clause(event);
+    if (what.empty()) continue;  // the puncture at the same place has been said
+    table.row({what, fmt::format("{:.3f}", event.time_s), fmt::format("{:.2f}", event.depth_mm),
+               fmt::format("{:.3f}", event.force_N)});
   }
   return table.text();
 }

@@ -28,7 +28,8 @@ std::string in_place_text(const HoleMap& map) {
                         mm.norm(), mm.x(), mm.y(), mm.z());
   }
   text +=
-      "\n  tip error: counts from the tissue that lies at the planned place while they are in; from the plan: from the "
+      "\n  tip off target: counts from the tissue that lies at the planned place while they are in; from the plan: "
+      "from the "
       "tissue that was planned, in a patient that nothing has moved";
   for (const std::string& remark : held != nullptr ? held->remarks : std::vector<std::string>{})
     text += "\n  " + remark;
@@ -38,8 +39,8 @@ std::string in_place_text(const HoleMap& map) {
 }  // namespace
 
 std::string map_text(const HoleMap& map) {
-  std::vector<std::string> heads{"hole",      "depth [mm]",     "in gland",      "to bone",  "to urethra",
-                                 "to rectum", "shift at break", "shift at most", "tip error"};
+  std::vector<std::string> heads{"hole",      "depth [mm]",     "in gland",      "to bone",       "to urethra",
+                                 "to rectum", "shift at break", "shift at most", "tip off target"};
   const bool beside = !map.in_place.empty();
   if (beside) heads.emplace_back("from the plan");
   Table table(heads);
@@ -69,7 +70,8 @@ std::string map_text(const HoleMap& map) {
       "\n\n  to bone, urethra, rectum: distance between the needle's surface on its straight path and the structure; 0 "
       "means that the path goes through the structure"
       "\n  shift: displacement of the gland as a whole just before its capsule breaks, and its maximum during insertion"
-      "\n  tip error: distance in the tissue between the planned and the actual position of the tip at its deepest";
+      "\n  tip off target: distance in the tissue between the planned and the actual position of the tip at its "
+      "deepest";
   if (beside) text += "\n" + in_place_text(map);
   for (const Spared structure : missing_structures(map))
     text += fmt::format("\n  There is no {} in this model.", to_string(structure));

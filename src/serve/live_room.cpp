@@ -64,7 +64,9 @@ Result<Reply> LiveRoom::enter(const NeedleStart& start) {
   run_ = std::move(*run);
   watch_.set_recording(true);
   hand_.give(run_->hand());
-  happened_ = {{.kind = "started", .time_s = 0.0, .depth_mm = 0.0, .force_N = 0.0, .region = start.name}};
+  words_ = {};
+  happened_ = {
+      {.kind = "started", .time_s = 0.0, .depth_mm = 0.0, .force_N = 0.0, .region = start.name, .label = "Start"}};
   reply.show.emplace_back(happened_.front());
   if (!implant_) return reply;
   run_->record_implant(implant_->state(), implant_->is_score_current());
@@ -83,7 +85,7 @@ void LiveRoom::end() {
 void LiveRoom::pump(Reply& reply) {
   run_->pump([&](const Event& is) {
     if (implant_) implant_->count(is);
-    const LiveEvent event{to_string(is.kind), is.time_s, is.depth_mm, is.force_N, is.region};
+    const LiveEvent event{to_string(is.kind), is.time_s, is.depth_mm, is.force_N, is.region, words_.label(is)};
     happened_.push_back(event);
     if (happened_.size() > kMostEvents) happened_.erase(happened_.begin() + 1);  // keeps the first event, "started"
     reply.show.emplace_back(event);
@@ -314,6 +316,7 @@ void LiveRoom::describe(SessionStatus& status) const {
   status.device = told_.device;
   status.device_problem = told_.device_problem;
   status.recording = told_.recording;
+  status.seed_off_mm = is_live() ? run_->seed_off_mm() : std::nullopt;
   if (!run_) return;
   status.recording.seconds = run_->time_s();
   status.loop = run_->loop();

@@ -7,6 +7,7 @@
 #include "live_run.hpp"
 #include "room.hpp"
 #include "shelf.hpp"
+#include "stylet/io/event_words.hpp"
 
 namespace stylet::serve {
 
@@ -70,6 +71,7 @@ class LiveRoom {
   std::unique_ptr<LiveRun> run_;          ///< null: no needle has been taken up
   bool is_aside_ = false;                 ///< a recording is shown
   std::vector<LiveEvent> happened_;       ///< events of the run
+  results::EventWords words_;             ///< has been told of all of them
   SessionStatus told_;                    ///< the part that is about the needle: what describe() gives
 };
 

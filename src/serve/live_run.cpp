@@ -14,6 +14,7 @@ namespace stylet::serve {
 
 namespace {
 
+constexpr double kHalfSeed_mm = 2.25;      ///< distance from the tip to the centre of a seed that is pushed out
 constexpr std::size_t kSamplesAtRest = 4;  ///< samples of the curve in a picture that says nothing new
 
 }  // namespace
@@ -107,6 +108,7 @@ std::shared_ptr<const LiveFrame> LiveRun::picture(bool whole_curve) {
   const bool due = view_.is_due();
   if (!news_.is_owed() && !whole_curve && !due) return nullptr;
   const Snapshot& s = runner_->snapshot();
+  if (fresh) foretell_seed(s);
   const std::span<const TissueForce> forces = tissue_forces(s, force_room_);
   if (view_.has_field()) {
     view_.set(forces);
@@ -162,6 +164,18 @@ std::string LiveRun::device_problem(const Companion& companion) const {
   if (!away) return companion.why_no_pose();
   return fmt::format("the handle is {:.0f} mm and {:.0f} degrees away from the needle: move it there", away->mm,
                      away->deg);
+}
+
+void LiveRun::foretell_seed(const Snapshot& now) {
+  const Step& step = now.step;
+  const bool in_tissue =
+      step.inserted_mm > 0.0 && step.tip_state != TipState::air && step.tip_state != TipState::exited;
+  if (!in_tissue) return seeds_.foretell(std::nullopt);
+  const Vec3 tip = vec3(now.centreline.back());
+  const Vec3 axis = (tip - vec3(now.centreline[now.centreline.size() - 2])).normalized();
+  const double length = model_->scenario().needle.length_mm + kHalfSeed_mm;
+  const Vec3 straight = step.base.origin + length * (step.base.rotation * Vec3::UnitZ());
+  seeds_.foretell(SeedForecast::Places{tip + kHalfSeed_mm * axis, straight});
 }
 
 std::vector<std::string> LiveRun::inside() const {

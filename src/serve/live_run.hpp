@@ -67,11 +67,15 @@ class LiveRun {
   void stop_recording(const std::string& why) { recording_.stop(why); }
   [[nodiscard]] const std::string& recording_problem() const { return recording_.problem(); }
   [[nodiscard]] double time_s() const { return time_s_; }
+  /// How far a seed that is pushed out of the tip now would rest from where a rigid straight needle on the same base
+  /// leaves it in a patient that nothing has moved [mm]; empty: not known, or the tip is not in the tissue.
+  [[nodiscard]] std::optional<double> seed_off_mm() const { return seeds_.forecast().off_mm(); }
   /// Regions that contained the needle in the last picture, the region of the tip first.
   [[nodiscard]] std::vector<std::string> inside() const;
 
  private:
   LiveRun(const OpenModel& open, std::size_t insertion, double recorded_frames_per_s);
+  void foretell_seed(const Snapshot& now);
 
   std::shared_ptr<const Model> model_;
   const PlannedInsertion& plan_;  ///< part of the model

@@ -55,7 +55,8 @@ Parcel parcel_of(const LiveEvent& event) {
                                              {"time_s", event.time_s},
                                              {"depth_mm", event.depth_mm},
                                              {"force_N", event.force_N},
-                                             {"region", event.region}});
+                                             {"region", event.region},
+                                             {"label", event.label}});
 }
 
 }  // namespace
@@ -101,6 +102,7 @@ Parcel parcel_of(const SessionStatus& s, const OwnStatus& own) {
                                               {"insertion", s.insertion},
                                               {"hole", s.hole},
                                               {"inside", s.inside},
+                                              {"seed_off_mm", s.seed_off_mm ? Json(*s.seed_off_mm) : Json(nullptr)},
                                               {"held", own.held},
                                               {"asking", own.asking},
                                               {"viewers", own.viewers},

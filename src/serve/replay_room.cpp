@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "replay_room.hpp"
 
+#include "stylet/io/event_words.hpp"
 #include "stylet/io/scenario_io.hpp"
 
 #include <algorithm>
@@ -42,8 +43,9 @@ Result<Reply> ReplayRoom::enter(const std::string& name, const CaseList& cases) 
                               recording->info.warnings, cases, nullptr);
   Reply reply;
   reply.show.emplace_back(std::move(made.scene));
+  results::EventWords words;
   for (const Event& e : recording->events)
-    reply.show.emplace_back(LiveEvent{to_string(e.kind), e.time_s, e.depth_mm, e.force_N, e.region});
+    reply.show.emplace_back(LiveEvent{to_string(e.kind), e.time_s, e.depth_mm, e.force_N, e.region, words.label(e)});
   reply.show.emplace_back(ShownPlan{});
   (void)leave();
   name_ = name;

@@ -58,12 +58,38 @@ void SeedFollower::set(std::vector<Vec3> rest_mm, std::vector<std::size_t> own) 
     nodes_.insert(nodes_.end(), corners.begin(), corners.end());
   }
   // The last ones have just been dropped, where the near field is largest.
-  if (own.size() > TissueProbe::kPoints) own.erase(own.begin(), own.end() - TissueProbe::kPoints);
+  constexpr std::ptrdiff_t kMost = TissueProbe::kPoints - 1;  // one is for the forecast
+  if (std::ssize(own) > kMost) own.erase(own.begin(), own.end() - kMost);
   watched_ = std::move(own);
+  near_.assign(watched_.size(), std::nullopt);
+  watch();
+  is_new_ = true;
+}
+
+/// Watches the seeds, and in front of them the point of the forecast, if it has one.
+void SeedFollower::watch() {
   std::vector<Vec3> points;
+  if (forecast_.point()) points.push_back(*forecast_.point());
   for (const std::size_t seed : watched_) points.push_back(rest_[seed]);
   version_ = probe_->watch(points);
-  is_new_ = true;
+}
+
+/// Takes up where the probe has seen the watched points.
+void SeedFollower::take_answer() {
+  probe_->fetch();
+  const TissueProbe::Answer& answer = probe_->answer();
+  if (answer.version != version_) return;
+  const std::size_t first = forecast_.point() ? 1 : 0;
+  for (std::size_t k = 0; k < watched_.size(); ++k)
+    if (answer.is_known[first + k]) near_[k] = vec3(answer.now[first + k]);
+  if (first == 1 && answer.is_known[0] && forecast_.take(vec3(answer.now[0]))) watch();
+}
+
+void SeedFollower::foretell(const std::optional<SeedForecast::Places>& now) {
+  take_answer();
+  const std::optional<Vec3> before = forecast_.point();
+  forecast_.aim(now);
+  if (forecast_.point() != before) watch();
 }
 
 void SeedFollower::follow(const DisplayField& field, DisplayField::Load& load) {
@@ -84,11 +110,9 @@ std::vector<Vec3> SeedFollower::now_mm() {
   std::vector<Vec3> now;
   now.reserve(rest_.size());
   for (std::size_t k = 0; k < rest_.size(); ++k) now.emplace_back(rest_[k] + moved_[k]);
-  probe_->fetch();
-  const TissueProbe::Answer& answer = probe_->answer();
-  for (std::size_t k = 0; k < watched_.size() && answer.version == version_; ++k) {
-    if (answer.is_known[k]) now[watched_[k]] = vec3(answer.now[k]);
-  }
+  take_answer();
+  for (std::size_t k = 0; k < watched_.size(); ++k)
+    if (near_[k]) now[watched_[k]] = *near_[k];
   return now;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "seed_forecast.hpp"
 #include "stylet/realtime/tissue_probe.hpp"
 #include "stylet/sim/display_field.hpp"
 
@@ -46,20 +47,29 @@ class SeedFollower {
   /// The same; empty if no seed has moved by more than 0.01 mm since the last call.
   [[nodiscard]] std::optional<std::vector<Vec3>> news();
 
+  /// Asks where a seed would rest that left the needle now (SeedForecast::aim()).
+  void foretell(const std::optional<SeedForecast::Places>& now);
+  [[nodiscard]] const SeedForecast& forecast() const { return forecast_; }
+
  private:
+  void watch();
+  void take_answer();
+
   std::shared_ptr<const Model> model_;
   std::shared_ptr<TissueProbe> probe_;
   std::uint32_t ordered_ = 0;  ///< number of the last order
   std::size_t dropping_ = 0;
   std::size_t taken_ = 0;  ///< seeds of the last order that have been taken
   std::vector<Vec3> rest_;
-  std::vector<MaterialPoint> at_;     ///< of each seed; outside of the mesh without an element
-  std::vector<Index> nodes_;          ///< four for each seed that has an element
-  std::vector<Vec3> moved_;           ///< displacement of each seed [mm]
-  std::vector<std::size_t> watched_;  ///< seeds that the probe watches
-  std::uint32_t version_ = 0;         ///< of the points that the probe watches
-  std::vector<Vec3> told_;            ///< the places of the last news
-  bool is_new_ = true;                ///< other seeds since the last news
+  std::vector<MaterialPoint> at_;          ///< of each seed; outside of the mesh without an element
+  std::vector<Index> nodes_;               ///< four for each seed that has an element
+  std::vector<Vec3> moved_;                ///< displacement of each seed [mm]
+  std::vector<std::size_t> watched_;       ///< seeds that the probe watches
+  std::vector<std::optional<Vec3>> near_;  ///< where the probe saw them last
+  SeedForecast forecast_;                  ///< its point is the first that the probe watches, so the last it looks at
+  std::uint32_t version_ = 0;              ///< of the points that the probe watches
+  std::vector<Vec3> told_;                 ///< the places of the last news
+  bool is_new_ = true;                     ///< other seeds since the last news
 };
 
 }  // namespace stylet::serve

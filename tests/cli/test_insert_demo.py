@@ -40,7 +40,8 @@ class Demo(InFolder):
         slip = next(e["time_s"] for e in summary["events"] if e["kind"] == "slip_start")
         stuck = [l for l in lines if start < l["time_s"] < slip]
         self.assertTrue(any(l["sticking"] >= 0.8 * l["contacts"] > 3 for l in stuck))
-        for text in ("skin contact (subcutaneous fat)", "puncture (prostate)", "withdrawn", "Report: out/demo/report.html"):
+        for text in ("touched the skin", "went through the skin", "entered the levator", "entered the prostate",
+                     "came out of the patient", "Report: out/demo/report.html"):
             self.assertIn(text, done.stdout)
         self.assertGreater(summary["mesh"]["nodes"], 2900)
         self.assertLess(summary["target_shift_mm"]["max"], 20)

@@ -45,8 +45,8 @@ class Insert(Cases):
     def test_a_mesh_of_somebody_else_is_taken_as_it_is_and_events_and_peaks_are_printed(self):
         done = self.succeed("insert", "block.toml", "-o", "out", *FAST, *GLAND)
         summary = check_results(self, self.folder / "out")
-        for text in ("skin contact (tissue)", "puncture (tissue)", "region entered (prostate)", "retraction start",
-                     "slip start", "withdrawn", "peak force", "target moved", "balance", "step"):
+        for text in ("touched the tissue", "entered the tissue", "entered the prostate", "began to be drawn back",
+                     "began to slip back", "came out of the patient", "peak force", "target moved", "balance", "step"):
             self.assertIn(text, done.stdout)
         lines = forces(self.folder / "out")
         self.assertEqual([line["time_s"] for line in lines], [(4 * (k + 1)) / 1000 for k in range(len(lines))])

@@ -95,6 +95,28 @@ TEST(LiveImplant, a_drop_in_air_is_refused_with_words) {
   EXPECT_EQ(at.dropped(), 0u);
 }
 
+TEST(LiveImplant, what_is_foretold_of_a_seed_is_what_the_dropped_seed_has) {
+  Implanting at;
+  LiveClient& page = *at.page;
+  EXPECT_TRUE(page.status["seed_off_mm"].is_null()) << "the tip is in the air";
+  ASSERT_TRUE(at.go_to(at.drop_depth(0, 0)));
+  const auto arrived = std::chrono::steady_clock::now();
+  ASSERT_TRUE(page.until([&] {
+    return std::chrono::steady_clock::now() - arrived > std::chrono::seconds(2) &&
+           page.status["seed_off_mm"].is_number();
+  }));
+  const double foretold = page.status["seed_off_mm"];
+  ASSERT_TRUE(at.drop());
+  const auto& seed = page.implant["seeds"][0];
+  double square = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double off = seed["rest_mm"][axis].get<double>() - seed["planned_mm"][axis].get<double>() -
+                       seed["why"]["hand"][axis].get<double>();
+    square += off * off;
+  }
+  EXPECT_NEAR(foretold, std::sqrt(square), 0.3) << "counted from a rigid straight needle on the same base";
+}
+
 TEST(LiveImplant, the_last_seed_can_be_taken_back) {
   Implanting at;
   LiveClient& page = *at.page;

@@ -54,10 +54,10 @@ test('events are spoken as they happen, not those of a recording nor those that 
   const say = (frame) => {
     session.frame = frame;
     spoken.textContent = '';
-    for (const listener of listeners) listener({ kind: 'skin_contact', region: 'body', depth_mm: 0, time_s: 1, force_N: 0 });
+    for (const listener of listeners) listener({ kind: 'skin_contact', region: 'body', label: 'Touched the skin', depth_mm: 0, time_s: 1, force_N: 0 });
     return spoken.textContent;
   };
   assert.equal(say(null), '');
   assert.equal(say({ replayed: true }), '');
-  assert.match(say({ replayed: false }), /^Skin touched/);
+  assert.match(say({ replayed: false }), /^Touched the skin/);
 });

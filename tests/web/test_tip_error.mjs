@@ -14,13 +14,13 @@ function frame({ error = f32(0.1, -0.3, -2.5), depth = 66, of = 66 } = {}) {
 test('outside the tissue there is no error', () => {
   const outside = frame({ error: NONE, of: NaN });
   assert.equal(hasTipError(outside), false);
-  assert.deepEqual(tipErrorText(outside), { text: '–', title: 'The tip is not in the tissue' });
+  assert.deepEqual(tipErrorText(outside), { text: '–', title: 'Not known: the tip is not in the tissue' });
 });
 
 test('the number is the length of the error, its parts are said by their anatomical directions', () => {
   const { text, title } = tipErrorText(frame());
   assert.equal(text, Math.hypot(0.1, 0.3, 2.5).toFixed(2));
-  assert.match(title, /2\.50 mm inferior, 0\.30 mm anterior, 0\.10 mm left\. A seed dropped now would miss/);
+  assert.match(title, /2\.50 mm inferior, 0\.30 mm anterior, 0\.10 mm left\. It is not the error of a seed/);
 });
 
 test('a needle that is drawn back keeps the error of its deepest point, and says so', () => {

@@ -42,7 +42,7 @@ export const MEASURES: Measure[] = [
   { key: 'rectum', label: 'Clearance to the rectum', of: (h) => h.clearance_mm.rectum, clearance: true },
   { key: 'break', label: 'Gland shift when its capsule breaks', of: (h) => (h.in_place ?? h).shift_at_break_mm?.norm ?? null, clearance: false },
   { key: 'shift', label: 'Largest gland shift', of: (h) => (h.in_place ?? h).shift_max_mm?.norm ?? null, clearance: false },
-  { key: 'tip', label: 'Tip error', of: (h) => (h.in_place ?? h).tip_error_mm?.norm ?? null, clearance: false },
+  { key: 'tip', label: 'Tip off its target', of: (h) => (h.in_place ?? h).tip_error_mm?.norm ?? null, clearance: false },
 ];
 
 /** The clearance to the nearest structure. */

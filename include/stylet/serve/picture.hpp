@@ -54,6 +54,7 @@ struct LiveEvent {
   double depth_mm = 0.0;
   double force_N = 0.0;
   std::string region;
+  std::string label;  ///< the event in words (results::EventWords); empty: it has none of its own
 };
 
 /// The map of the template's holes, as far as it has been computed.
@@ -81,8 +82,11 @@ struct SessionStatus {
   std::string insertion;            ///< name of the insertion
   std::string hole;                 ///< template hole; empty where the insertion does not use one
   std::vector<std::string> inside;  ///< regions that contain the tip (the first) or the shaft
-  std::string device;               ///< device that moves the needle: "page", or a companion's name
-  std::string device_problem;       ///< why the device does not move the needle; empty: it moves the needle
+  /// [mm] How far a seed that is pushed out of the tip now would rest from where a rigid straight needle leaves it in a
+  /// patient that nothing has moved; empty: not known, or the tip is not in the tissue.
+  std::optional<double> seed_off_mm;
+  std::string device;          ///< device that moves the needle: "page", or a companion's name
+  std::string device_problem;  ///< why the device does not move the needle; empty: it moves the needle
   struct Companion {
     std::string name;           ///< empty: there is no companion
     std::int64_t not_used = 0;  ///< messages and connections that it has not used

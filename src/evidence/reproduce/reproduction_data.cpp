@@ -3,6 +3,7 @@
 
 #include "io/results/report/text.hpp"
 #include "stylet/core/json_text.hpp"
+#include "stylet/io/event_words.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -56,10 +57,12 @@ Json figure5_json(const std::vector<Figure5Row>& rows) {
 
 Json run_json(const Figure6Run& run) {
   Json events = Json::array();
+  std::vector<results::EventWords> words;  // of each insertion
   for (const Figure6Event& e : run.events) {
+    words.resize(std::max(words.size(), e.insertion + 1));
     events.push_back({{"kind", to_string(e.event.kind)},
                       {"region", e.event.region},
-                      {"label", event_label(e.event)},
+                      {"label", words[e.insertion].label(e.event)},
                       {"insertion", e.insertion + 1},
                       {"iteration", e.iteration},
                       {"time_s", e.event.time_s},
@@ -136,30 +139,6 @@ std::string column(const std::vector<Step>& steps, Value value) {
 }  // namespace
 
 std::string curve_file(const Figure6Run& run) { return "figure6_" + run.variant.id + ".csv"; }
-
-std::string event_label(const Event& event) {
-  std::string region = event.region;
-  std::replace(region.begin(), region.end(), '_', ' ');
-  switch (event.kind) {
-    case EventKind::skin_contact:
-      return "skin contact";
-    case EventKind::puncture:
-      return region == "body" ? "skin punctured" : region + " punctured";
-    case EventKind::region_entered:
-      return "in the " + region;
-    case EventKind::retraction_start:
-      return "retraction starts, tissue sticks";
-    case EventKind::slip_start:
-      return "slip starts";
-    case EventKind::withdrawn:
-      return "needle out";
-    default:
-      break;
-  }
-  std::string text = to_string(event.kind);
-  std::replace(text.begin(), text.end(), '_', ' ');
-  return text;
-}
 
 Json figure2_json(const Figure2& figure) {
   Json contours = Json::array();

@@ -18,7 +18,4 @@ Json curves_json(const Figure6Run& run);
 /// Name of the file with a variant's curves, such as "figure6_default.csv".
 std::string curve_file(const Figure6Run& run);
 
-/// An event as text for the page, such as "prostate punctured".
-std::string event_label(const Event& event);
-
 }  // namespace stylet::reproduce

@@ -18,7 +18,9 @@ constexpr Colour kOrange{0.902, 0.624, 0.000}, kSkyBlue{0.337, 0.706, 0.914}, kG
     kYellow{0.941, 0.894, 0.259}, kBlue{0.000, 0.447, 0.698}, kVermillion{0.835, 0.369, 0.000},
     kPurple{0.800, 0.475, 0.655};
 constexpr Colour kBone{0.66, 0.66, 0.63}, kFlesh{0.80, 0.74, 0.68};
-constexpr Colour kFat{0.93, 0.85, 0.56}, kMuscle{0.72, 0.36, 0.33};
+constexpr Colour kMuscle{0.72, 0.36, 0.33};
+// Layers of fat are shades of one tissue, light to dark. Of these, no two organs look alike with any colour vision.
+constexpr Colour kLightFat{0.98, 0.95, 0.82}, kFat{0.70, 0.60, 0.36}, kDarkFat{0.45, 0.33, 0.12};
 
 struct Custom {
   std::string_view part_of_name;
@@ -26,15 +28,15 @@ struct Custom {
 };
 
 /// Fixed colours of organs, so that they look the same in all reports; other regions get the remaining colours in turn.
-constexpr std::array kCustoms{Custom{"prostate", kOrange}, Custom{"urethra", kYellow},
-                              Custom{"bladder", kSkyBlue}, Custom{"rectum", kPurple},
-                              Custom{"seminal", kGreen},   Custom{"pubic", kBone},
-                              Custom{"bone", kBone},       Custom{"femur", kBone},
-                              Custom{"band", kVermillion}, Custom{"ligament", kVermillion},
-                              Custom{"body", kFlesh},      Custom{"skin", kFlesh},
-                              Custom{"fat", kFat},         Custom{"levator", kMuscle},
+constexpr std::array kCustoms{Custom{"prostate", kOrange},     Custom{"urethra", kYellow}, Custom{"bladder", kSkyBlue},
+                              Custom{"rectum", kPurple},       Custom{"seminal", kGreen},  Custom{"pubic", kBone},
+                              Custom{"bone", kBone},           Custom{"femur", kBone},     Custom{"band", kVermillion},
+                              Custom{"ligament", kVermillion}, Custom{"body", kFlesh},     Custom{"skin", kFlesh},
+                              Custom{"subcut", kLightFat},     Custom{"ischio", kDarkFat}, Custom{"fat", kFat},
+                              Custom{"fat", kLightFat},        Custom{"fat", kDarkFat},    Custom{"levator", kMuscle},
                               Custom{"lumen", kBone}};
-constexpr std::array kFree{kOrange, kBlue, kGreen, kVermillion, kPurple, kSkyBlue, kYellow};
+/// The two blues are last, so that they stand beside each other only where nothing else is left.
+constexpr std::array kFree{kOrange, kGreen, kVermillion, kPurple, kYellow, kSkyBlue, kBlue};
 
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),

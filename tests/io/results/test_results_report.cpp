@@ -97,10 +97,10 @@ TEST(Report, with_needles_in_place_says_so_and_from_where_the_figures_of_the_map
     return report_html(run, regions, find_moments(run.frames), {{}, "no driver"}, &map).value();
   };
   EXPECT_EQ(page_with(synthetic_map()).find("Needles are in place"), std::string::npos);
-  EXPECT_EQ(page_with(synthetic_map()).find("Tip error from the plan"), std::string::npos);
+  EXPECT_EQ(page_with(synthetic_map()).find("Tip off the planned tissue"), std::string::npos);
   const std::string page = page_with(synthetic_map_beside_needles());
   expect_says(page, {"Needles are in place in the holes B4, F4", "mm from its place at rest",
-                     "Needle in place, hole B4: it scraped.", "Tip error from the plan"});
+                     "Needle in place, hole B4: it scraped.", "Tip off the planned tissue"});
 
   auto beside = synthetic_run();
   EXPECT_EQ(page_of(recording_of(beside)).find("Needles were in place"), std::string::npos);
@@ -114,7 +114,7 @@ TEST(Report, with_needles_in_place_says_so_and_from_where_the_figures_of_the_map
 TEST(Report, tells_what_happened_from_the_data) {
   auto run = synthetic_run();
   const std::string page = page_of(recording_of(run));
-  expect_says(page, {"76.0 mm beyond the entry point", "pierced the skin at 7.0 mm under an axial force of 1.10 N",
+  expect_says(page, {"76.0 mm beyond the entry point", "went through the skin at 7.0 mm under an axial force of 1.10 N",
                      "For the first 4.0 mm the tissue stuck to it",
                      "2.7 mm towards the head, 0.5 mm forwards and 0.2 mm to the patient&#39;s left",
                      "back in its initial shape", "Not a medical device."});
@@ -137,7 +137,7 @@ TEST(Report, a_run_that_ends_inside_the_tissue_is_told_as_such) {
   std::string story;
   for (const auto& p : tell_what_happened(recording, find_moments(recording.frames))) story += p + "\n";
   EXPECT_EQ(story.find("drawn"), std::string::npos);
-  EXPECT_NE(story.find("pierced the prostate"), std::string::npos);
+  EXPECT_NE(story.find("entered the prostate"), std::string::npos);
 }
 
 TEST(Report, directions_are_words_of_the_patient_frame) {
@@ -151,10 +151,10 @@ TEST(Report, tells_how_far_the_tip_lies_from_its_planned_place) {
   auto run = synthetic_run();
   const auto says = [&](const char* text) { return page_of(recording_of(run)).find(text) != std::string::npos; };
   EXPECT_TRUE(
-      says("the tip lay in tissue 2.2 mm away from where it was planned (2.1 mm towards the feet, 0.4 mm to "
+      says("the tip was off its target by 2.2 mm (2.1 mm towards the feet, 0.4 mm to "
            "the patient"));
   run.summary.tip_error_mm.reset();
-  EXPECT_FALSE(says("from where it was planned"));
+  EXPECT_FALSE(says("off its target by"));
 }
 
 TEST(Report, tells_how_the_gland_moved_in_anatomical_words) {
@@ -217,7 +217,7 @@ TEST(Report, the_first_thing_that_is_punctured_is_the_skin_whatever_lies_under_i
     for (auto& event : run.summary.events) {
       if (event.kind == EventKind::puncture) event.region = region;
     }
-    EXPECT_EQ(data_of(recording_of(run))["events"][1]["label"], "Skin punctured") << region;
+    EXPECT_EQ(data_of(recording_of(run))["events"][1]["label"], "Went through the skin") << region;
   }
 }
 
@@ -234,7 +234,7 @@ TEST(Report, its_data_are_those_of_the_run) {
   ASSERT_EQ(data["frames"].size(), run.frames.size());
   EXPECT_EQ(data["frames"][data["first_frame"].get<std::size_t>()]["label"], "Deepest");
   EXPECT_EQ(data["events"].size(), run.summary.events.size());
-  EXPECT_EQ(data["events"][1]["label"], "Skin punctured");
+  EXPECT_EQ(data["events"][1]["label"], "Went through the skin");
 
   // Every surface node is a mesh node with the same displacement, up to half a step of the scale.
   const auto points = numbers<float>(data["surface"]["points_mm"]);

@@ -79,7 +79,7 @@ export async function readout(page, label) {
   return Number(text.replace('−', '-'));
 }
 
-/** The value of a key figure, by its name: "Peak force", "Tip error", …; NaN if there is none. */
+/** The value of a key figure, by its name: "Peak force", "Tip off its target", …; NaN if there is none. */
 export async function figure(page, name) {
   return Number(await page.locator('.figure').filter({ hasText: name }).locator('b').textContent());
 }

@@ -43,7 +43,7 @@ test('the page opens with the needle before the skin', async () => {
   await waitUntilReady(page);
   assert.equal(await readout(page, 'Axial'), 0);
   assert.ok((await readout(page, 'Depth')) < 0, 'the needle is before the skin');
-  assert.equal(await figure(page, 'Tip error'), NaN, 'the tip is not in the tissue');
+  assert.equal(await figure(page, 'Tip off its target'), NaN, 'the tip is not in the tissue');
   heard = await listenToEvents(page);
   await marked(page, '3D view');
   await keepPicture(page, 'start');
@@ -55,10 +55,10 @@ test('the wheel pushes the needle: skin and capsule resist, then give way', asyn
   const before = [];
   await turnUntil(3, 'the capsule to be punctured', async () => {
     before.push(await readout(page, 'Axial'));
-    return said('Punctured prostate');
+    return said('Entered the prostate');
   });
-  assert.ok(await said('Skin touched') && await said('Punctured skin'));
-  const peak = Number(/([\d.]+) N$/.exec(await said('Punctured prostate'))[1]);
+  assert.ok(await said('Touched the skin') && await said('Went through the skin'));
+  const peak = Number(/([\d.]+) N$/.exec(await said('Entered the prostate'))[1]);
   const first = before.find((force) => force > 0.02);
   assert.ok(before[0] === 0 && first < peak && Math.max(...before) > first, `the force rises: ${before}, ${peak} N at the capsule`);
   await untilReadout(page, 'Axial', (force) => force < 0.9 * peak && force > 0);
@@ -66,9 +66,9 @@ test('the wheel pushes the needle: skin and capsule resist, then give way', asyn
 
 test('the gland moves with the needle', async () => {
   await turnUntil(3, 'the tip within the gland', async () => (await readout(page, 'Depth')) > 55);
-  const error = await figure(page, 'Tip error');
-  assert.ok(error > 1 && error < 20, `tip error ${error} mm`);
-  assert.match(await page.locator('.figure').filter({ hasText: 'Tip error' }).getAttribute('title'), /mm inferior, .* mm (left|right)\. A seed/);
+  const error = await figure(page, 'Tip off its target');
+  assert.ok(error > 1 && error < 20, `the tip is off its target by ${error} mm`);
+  assert.match(await page.locator('.figure').filter({ hasText: 'Tip off its target' }).getAttribute('title'), /mm inferior, .* mm (left|right)\. It is not the error of a seed/);
   await keepPicture(page, 'inserted');
   await page.getByText('View', { exact: true }).click();
   await page.getByLabel('Displacement').check();
@@ -92,7 +92,7 @@ test('withdrawing turns the force round, until the needle is out', async () => {
   await turnWheel(page, -6);
   await untilReadout(page, 'Axial', (force) => force < 0);
   await turnUntil(-20, 'the tip before the skin', async () => (await readout(page, 'Depth')) < 0);
-  await until('the last event', async () => (await heard()).join('; '), (said) => /Retraction.*Slips.*Out/.test(said));
+  await until('the last event', async () => (await heard()).join('; '), (said) => /Drawn back.*Slips.*Out of the patient/.test(said));
   await until('a needle in the air', () => page.locator('.readouts').textContent(), (text) => text.includes('in air'));
   await untilReadout(page, 'Axial', (force) => force === 0);
 });
@@ -130,7 +130,7 @@ test('the insertion can be replayed, its time slider dragged, and its curve save
   await drag(0.7);
   await untilReadout(page, 'Depth', (depth) => depth > 10);
   await page.mouse.up();
-  assert.equal(await page.locator('.figure').filter({ hasText: 'Tip error' }).isVisible(), false, 'a recording does not have it');
+  assert.equal(await figure(page, 'Tip off its target'), NaN, 'a recording does not have it');
   await keepPicture(page, 'replay');
 
   const { name, bytes } = await download(() => page.locator('#replay').getByText('CSV').click());

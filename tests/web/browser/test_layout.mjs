@@ -30,7 +30,7 @@ function faults() {
       if (at !== e && !e.contains(at) && !at?.contains(e)) found.push(`${name(e)} is covered by ${at ? name(at) : 'nothing'}`);
     }
   }
-  for (const e of document.querySelectorAll('button, .value, .name, .unit, b, h1, h2, .deadline, .pose, .holder, .recording, .picker-title, .picker-hint, output')) {
+  for (const e of document.querySelectorAll('button, .value, .name, .unit, b, h1, h2, .computer, .pose, .holder, .recording, .picker-title, .picker-hint, output')) {
     if (e.checkVisibility() && e.scrollWidth > e.clientWidth + 1 && getComputedStyle(e).display !== 'inline') found.push(`${name(e)} is cut off`);
   }
   const side = document.querySelector('.side');

@@ -45,7 +45,7 @@ test('the colours can be changed and taken away', async () => {
 test('predictions come one by one, the planned hole first, and can be stopped', async () => {
   await page.getByRole('button', { name: 'Predict shift' }).click();
   await until('a first prediction', mapped, (count) => count > 0);
-  assert.match(await told('e3.5'), /Largest gland shift: [\d.]+ mm\nTip error: [\d.]+ mm/);
+  assert.match(await told('e3.5'), /Largest gland shift: [\d.]+ mm\nTip off its target: [\d.]+ mm/);
   assert.match(await page.locator('.map-state').textContent(), /^Hole \d+ of \d+ …$/);
   await keepPicture(page, 'template-predicted');
   await page.getByRole('button', { name: 'Stop', exact: true }).click();
@@ -56,11 +56,11 @@ test('predictions come one by one, the planned hole first, and can be stopped', 
 });
 
 test('a needle that goes where one was predicted has the tip error that was predicted', async () => {
-  const predicted = Number(/Tip error: ([\d.]+) mm/.exec(await told('e3.5'))[1]);
+  const predicted = Number(/Tip off its target: ([\d.]+) mm/.exec(await told('e3.5'))[1]);
   const depth = Number(/([\d.]+) mm deep/.exec(await told('e3.5'))[1]);
   await turnWheel(page, Math.round(depth) + 3);
   await untilReadout(page, 'Depth', (now) => now === Math.round(depth));
-  const error = await until('an error as predicted', () => figure(page, 'Tip error'), (now) => Math.abs(now / predicted - 1) < 0.1);
+  const error = await until('an error as predicted', () => figure(page, 'Tip off its target'), (now) => Math.abs(now / predicted - 1) < 0.1);
   assert.ok(predicted > 1, `${predicted} mm predicted, ${error} mm found`);
 });
 

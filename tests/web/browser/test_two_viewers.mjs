@@ -19,8 +19,8 @@ const set = stage({
 const { test } = set;
 
 test('the second watches', async () => {
-  await second.page.getByText('You are watching · 1 other viewer').waitFor();
-  await first.page.getByText('You hold the needle · 1 other viewer').waitFor();
+  await second.page.getByText('You are watching, 1 other viewer').waitFor();
+  await first.page.getByText('You hold the needle, 1 other viewer').waitFor();
   const heard = await listenToEvents(second.page);
   await turnWheel(first.page, 15);
   await untilReadout(first.page, 'Depth', (depth) => depth === 12);

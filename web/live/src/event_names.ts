@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The server says events in words (Event.label); this page decides which of them are harm.
 import type { Event } from './wire';
 
-const NAMES: Record<string, string> = {
-  skin_contact: 'Skin touched', puncture: 'Punctured', region_entered: 'Into', retraction_start: 'Retraction', slip_start: 'Slips',
-  withdrawn: 'Out', bone_contact: 'Bone', exited: 'Through', re_entered: 'Back in its track', started: 'Start',
-};
 const BONE_OR_OUT = new Set(['bone_contact', 'exited']);
 let spared = new Set<string>();
-const WITH_REGION = new Set(['puncture', 'region_entered']);
-/** Whether a region fills the space between the organs; its surface is the skin (is_surrounding() in C++). */
-const isSurrounding = (region: string): boolean => region === 'body' || region === 'levator' || region.endsWith('_fat');
 let labels = new Map<string, string>();
 
 /** Sets the labels of the regions of the case that is shown. */
@@ -22,15 +16,19 @@ export function regionLabel(name: string): string {
   return labels.get(name) ?? name;
 }
 
-export function eventLabel(event: Event): string {
-  const name = NAMES[event.kind] ?? event.kind.replaceAll('_', ' ');
-  if (event.kind === 'puncture' && isSurrounding(event.region)) return `${name} skin`;
-  return WITH_REGION.has(event.kind) && event.region ? `${name} ${regionLabel(event.region)}` : name;
+/** The events that have words of their own. Entering a region by a puncture has none: the puncture has said it. */
+export function withWords(events: readonly Event[]): Event[] {
+  return events.filter((event) => event.label !== '');
 }
 
 /** Whether an event harms the patient: the needle enters an organ to be spared, meets bone or leaves the body. */
 export function isHarm(event: Event): boolean {
   return BONE_OR_OUT.has(event.kind) || (event.kind === 'region_entered' && spared.has(event.region));
+}
+
+/** Whether the words of an event say a harm. Those of a puncture do, of which the harm is the next event. */
+export function saysHarm(event: Event): boolean {
+  return isHarm(event) || (event.kind === 'puncture' && spared.has(event.region));
 }
 
 export function harmSentence(event: Event): string {

@@ -52,7 +52,7 @@ export interface Frame {
 export interface Status {
   state: 'loading' | 'ready' | 'failed';
   stage?: string; fraction?: number | null; message?: string; cure?: string;
-  mode?: 'live' | 'replay'; paused?: boolean; insertion?: string; hole?: string; inside?: string[];
+  mode?: 'live' | 'replay'; paused?: boolean; insertion?: string; hole?: string; inside?: string[]; seed_off_mm?: number | null;
   you_hold?: boolean; hand_stopped?: boolean; held?: boolean; asking?: number; you_ask?: boolean; viewers?: number; device?: string; device_problem?: string;
   companion?: { name: string; not_used: number; newest: string; cure: string };
   recording?: { name: string; seconds: number; problem?: string; warning?: string } | null;
@@ -64,7 +64,8 @@ export interface Status {
 }
 
 export interface Interrupted { recording: string; recorded_s: number; seeds: number; planned_seeds: number; needle: string }
-export interface Event { kind: string; time_s: number; depth_mm: number; force_N: number; region: string }
+/** `label` says it in words; it is empty for an event that another one of the same moment has said. */
+export interface Event { kind: string; time_s: number; depth_mm: number; force_N: number; region: string; label: string }
 export interface LiveMap { map: HoleMap | null; why_not: string; predicted: number; predicting: boolean }
 export interface Notice { text: string; cure: string }
 

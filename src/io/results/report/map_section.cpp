@@ -56,7 +56,8 @@ std::string tell_in_place(const HoleMap& map) {
   if (held != nullptr && held->shift_mm)
     text += fmt::format(", {:.2f} mm from its place at rest", held->shift_mm->norm());
   text +=
-      ". The tip error counts from the tissue that lies at the planned place while they are in, and, in the last "
+      ". How far the tip is off its target counts from the tissue that lies at the planned place while they are in, "
+      "and, in the last "
       "column "
       "of numbers, from the tissue that was planned, in a patient that nothing has moved.";
   if (held != nullptr && !held->remarks.empty()) text += " " + fmt::format("{}", fmt::join(held->remarks, " "));
@@ -80,9 +81,9 @@ std::string map_section(const HoleMap& map) {
          "tall-table\"><table class=\"parameters map\"><thead><tr><th rowspan=\"2\">Hole</th><th class=\"number\" "
          "rowspan=\"2\">Depth [mm]</th><th class=\"number\" rowspan=\"2\">In the gland [mm]</th><th "
          "colspan=\"3\">Clearance [mm] to</th><th colspan=\"2\">Shift of the gland [mm]</th><th class=\"number\" "
-         "rowspan=\"2\">Tip error [mm]</th>" +
+         "rowspan=\"2\">Tip off its target [mm]</th>" +
          std::string(map.in_place.empty() ? ""
-                                          : "<th class=\"number\" rowspan=\"2\">Tip error from the plan [mm]</th>") +
+                                          : "<th class=\"number\" rowspan=\"2\">Tip off the planned tissue [mm]</th>") +
          "<th rowspan=\"2\">Remark</th></tr><tr><th class=\"number\">bone</th><th "
          "class=\"number\">urethra</th><th class=\"number\">rectum</th><th class=\"number\">at break</th><th "
          "class=\"number\">at most</th></tr></thead><tbody>" +
@@ -90,7 +91,8 @@ std::string map_section(const HoleMap& map) {
          "</tbody></table></div></details><p><em>Clearance</em> is the distance between the needle’s surface and the "
          "structure, along the whole straight way from the skin to the planned tip; 0 means that the way touches or "
          "crosses it. <em>Shift</em> is the shift of the gland as a whole, just before its capsule breaks and at its "
-         "largest on the way in. <em>Tip error</em> is the distance in the tissue between the planned and the actual "
+         "largest on the way in. <em>Tip off its target</em> is the distance in the tissue between the planned and the "
+         "actual "
          "place of the tip at its deepest. A dash means that there is no value. The same numbers are in "
          "<code>map.csv</code>. Do not plan or judge a treatment by this map.</p></section>";
 }

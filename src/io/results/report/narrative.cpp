@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/narrative.hpp"
 
-#include "stylet/io/region_views.hpp"
-#include "stylet/sim/scenario.hpp"
+#include "stylet/io/event_words.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <optional>
 
@@ -24,26 +22,12 @@ std::string join(const std::vector<std::string>& parts) {
   return text;
 }
 
-/// A region's name inside a sentence: "pubic arch".
-std::string spoken(const std::string& region) {
-  std::string text = readable_name(region);
-  const bool initials = text.size() > 1 && std::isupper(static_cast<unsigned char>(text[1])) != 0;
-  if (!text.empty() && !initials) text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
-  return text;
-}
-
-/// Name of the surface that the tip pierces. Fat and muscle between the organs have no membrane, so a surface that
-/// breaks there is the skin.
-std::string surface(const std::string& region) { return is_surrounding(region) ? "skin" : region; }
-
 /// A force such as "0.42 N", with fewer digits for small forces.
 std::string newtons(double force) {
   return std::abs(force) < 0.005 ? "less than 0.01 N" : fmt::format("{:.2f} N", force);
 }
 
 std::string at_most(double force) { return (std::abs(force) < 0.005 ? "" : "at most ") + newtons(force); }
-
-std::string the(const std::string& region) { return region.empty() ? "the tissue" : "the " + spoken(region); }
 
 const Event* find(const std::vector<Event>& events, EventKind kind) {
   const auto found = std::find_if(events.begin(), events.end(), [&](const Event& e) { return e.kind == kind; });
@@ -64,42 +48,37 @@ std::string tell_motion(const RunRecording& run, const Frame& deepest) {
   return text + ".";
 }
 
+/// What is said of an event besides its words and depth; empty: the event is not told, since it is no event on the way
+/// in.
+std::optional<std::string> rest_of_clause(const Event& e) {
+  switch (e.kind) {
+    case EventKind::puncture:
+    case EventKind::bone_contact:
+      return " under an axial force of " + newtons(e.force_N);
+    case EventKind::grazed:
+      return " without piercing it";
+    case EventKind::skin_contact:
+    case EventKind::region_entered:
+    case EventKind::exited:
+    case EventKind::re_entered:
+      return "";
+    case EventKind::retraction_start:
+    case EventKind::slip_start:
+    case EventKind::withdrawn:
+      break;
+  }
+  return std::nullopt;
+}
+
 /// Sentences about the events on the way in, in their order.
 std::string tell_events(const std::vector<Event>& events) {
+  constexpr std::size_t kMost = 7;
   std::vector<std::string> clauses;
-  std::string pierced;  // region of the last puncture, whose region_entered event needs no further sentence
+  EventWords words;
   for (const Event& e : events) {
-    const std::string at = fmt::format(" at {:.1f} mm", e.depth_mm);
-    const std::string force = " under an axial force of " + newtons(e.force_N);
-    switch (e.kind) {
-      case EventKind::skin_contact:
-        clauses.push_back("touched the skin" + at);
-        break;
-      case EventKind::puncture:
-        clauses.push_back("pierced " + the(surface(e.region)) + at + force);
-        pierced = e.region;
-        break;
-      case EventKind::region_entered:
-        if (e.region != pierced && e.region != "body") clauses.push_back("entered " + the(e.region) + at);
-        break;
-      case EventKind::bone_contact:
-        clauses.push_back("met bone (" + the(e.region) + ")" + at + force);
-        break;
-      case EventKind::exited:
-        clauses.push_back("came out on the far side" + at);
-        break;
-      case EventKind::re_entered:
-        clauses.push_back("entered again" + at);
-        break;
-      case EventKind::grazed:
-        clauses.push_back("slid along the surface" + at + " without piercing it");
-        break;
-      case EventKind::retraction_start:
-      case EventKind::slip_start:
-      case EventKind::withdrawn:
-        break;
-    }
-    constexpr std::size_t kMost = 7;
+    const std::string what = words.clause(e);
+    const auto rest = rest_of_clause(e);
+    if (!what.empty() && rest) clauses.push_back(fmt::format("{} at {:.1f} mm{}", what, e.depth_mm, *rest));
     if (clauses.size() == kMost) break;
   }
   return clauses.empty() ? std::string() : "The tip " + join(clauses) + ".";
@@ -133,13 +112,14 @@ std::string tell_target(const RunRecording& run) {
       s.target_shift_max_mm);
 }
 
-/// A sentence about the tip error: the tip's place in the tissue compared with its planned place.
+/// Sentences about the tip error: the tip's place in the tissue compared with its planned place.
 std::string tell_tip_error(const RunRecording& run) {
   const auto& error = run.summary->tip_error_mm;
   if (!error) return {};
   return fmt::format(
-      "At the deepest point the tip lay in tissue {:.1f} mm away from where it was planned ({}): a seed dropped there "
-      "would miss its place by about as much.",
+      "At the deepest point the tip was off its target by {:.1f} mm ({}): so far from the planned place lies, in the "
+      "patient at rest, the tissue that it had reached. This is not the error of a seed, which lies in front of the "
+      "tip.",
       error->norm(), describe_shift(*error));
 }
 
@@ -156,7 +136,7 @@ std::string tell_in_place(const RunRecording& run) {
   }
   if (held->tip_error_mm) {
     text += fmt::format(
-        " Counted from the tissue that lay at the planned place while they were in, the tip error was {:.1f} mm.",
+        " Counted from the tissue that lay at the planned place while they were in, it was off by {:.1f} mm.",
         held->tip_error_mm->norm());
   }
   return text;
@@ -191,7 +171,8 @@ std::string tell_retraction(const RunRecording& run, const Frame& after) {
 
 std::string target_name(const RunRecording& run) {
   std::vector<std::string> names;
-  for (const int r : run.info.target_regions) names.push_back(spoken(run.mesh.regions[static_cast<std::size_t>(r)]));
+  for (const int r : run.info.target_regions)
+    names.push_back(spoken_name(run.mesh.regions[static_cast<std::size_t>(r)]));
   return names.empty() ? "target" : join(names);
 }
 
@@ -216,34 +197,6 @@ std::string in_words(const Vec3& shift, const std::array<DirectionWords, 3>& wor
         fmt::format("{:.{}f} mm {}", std::abs(shift[k]), digits, shift[k] > 0 ? word.positive : word.negative));
   }
   return parts.empty() ? fmt::format("less than {:.{}f} mm in any direction", least, digits + 1) : join(parts);
-}
-
-std::string event_label(const Event& e) {
-  const std::string region = readable_name(e.kind == EventKind::puncture ? surface(e.region) : e.region);
-  const auto with_region = [&](const char* alone, const char* verb) { return region.empty() ? alone : region + verb; };
-  switch (e.kind) {
-    case EventKind::skin_contact:
-      return "Skin contact";
-    case EventKind::puncture:
-      return with_region("Puncture", " punctured");
-    case EventKind::region_entered:
-      return with_region("Region entered", " entered");
-    case EventKind::retraction_start:
-      return "Retraction starts";
-    case EventKind::slip_start:
-      return "Slip starts";
-    case EventKind::withdrawn:
-      return "Withdrawn";
-    case EventKind::bone_contact:
-      return "Bone contact";
-    case EventKind::exited:
-      return "Out on the far side";
-    case EventKind::re_entered:
-      return "Re-entered";
-    case EventKind::grazed:
-      return "Surface grazed";
-  }
-  return readable_name(to_string(e.kind));
 }
 
 std::vector<std::string> tell_what_happened(const RunRecording& run, const Moments& moments) {

@@ -18,9 +18,6 @@ std::vector<std::string> tell_what_happened(const RunRecording& run, const Momen
 /// The computing times of the steps in one or two sentences.
 std::string tell_step_times(const Summary& summary);
 
-/// An event in a few words: "Prostate punctured", "Retraction starts".
-std::string event_label(const Event& event);
-
 /// A displacement in patient directions, "2.7 mm towards the head and 0.5 mm forwards".
 /// @param shift [mm] LPS
 std::string describe_shift(const Vec3& shift);

@@ -4,6 +4,7 @@
 #include "record/json.hpp"
 #include "report/narrative.hpp"
 #include "report/text.hpp"
+#include "stylet/io/event_words.hpp"
 #include "stylet/io/hole_map_io.hpp"
 
 #include <algorithm>
@@ -192,9 +193,12 @@ Json frames_json(const RunRecording& run, const std::vector<std::size_t>& chosen
 
 Json events_json(const std::vector<Event>& events) {
   Json list = Json::array();
+  EventWords words;
   for (const Event& e : events) {
+    const std::string label = words.label(e);
+    if (label.empty()) continue;  // the puncture at the same place has been said
     list.push_back({{"kind", to_string(e.kind)},
-                    {"label", event_label(e)},
+                    {"label", label},
                     {"time_s", e.time_s},
                     {"depth_mm", e.depth_mm},
                     {"force_N", e.force_N}});

@@ -12,6 +12,8 @@
 #include "report/report_data.hpp"
 #include "report/text.hpp"
 
+#include "stylet/io/event_words.hpp"
+
 #include <fmt/format.h>
 #include <hdf5.h>
 #include <vtkVersion.h>
@@ -40,12 +42,14 @@ std::string tiles(const RunRecording& run, const Frame& deepest) {
 
 std::string event_rows(const std::vector<Event>& events) {
   std::string html;
+  EventWords words;
   for (const Event& e : events) {
-    html += "<tr>" + text_cell(readable_name(to_string(e.kind))) + text_cell(readable_name(e.region)) +
-            number_cell(fixed(e.time_s, 3)) + number_cell(fixed(e.depth_mm, 2)) + number_cell(fixed(e.force_N, 3)) +
-            "</tr>";
+    const std::string label = words.label(e);
+    if (label.empty()) continue;  // the puncture at the same place has been said
+    html += "<tr>" + text_cell(label) + number_cell(fixed(e.time_s, 3)) + number_cell(fixed(e.depth_mm, 2)) +
+            number_cell(fixed(e.force_N, 3)) + "</tr>";
   }
-  return html.empty() ? "<tr><td colspan=\"5\">Nothing happened: the needle met no tissue.</td></tr>" : html;
+  return html.empty() ? "<tr><td colspan=\"4\">Nothing happened: the needle met no tissue.</td></tr>" : html;
 }
 
 std::string model_facts(const RunRecording& run) {

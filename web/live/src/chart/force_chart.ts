@@ -5,7 +5,7 @@ import { circle, strokeLine } from '../../../shared/canvas';
 import uPlot from 'uplot';
 import { drawEvents, labelsHeight, type PlacedEvent } from '../../../shared/event_labels';
 import { axis, CURVES, fontSize, INK, lineScale } from '../../../shared/plot_style';
-import { eventLabel, isHarm } from '../event_names';
+import { saysHarm, withWords } from '../event_names';
 import { HARM } from '../palette';
 import { onRepaintEvery } from '../../../shared/repaint';
 import type { Session } from '../session';
@@ -71,8 +71,8 @@ export class ForceChart {
   }
 
   private placeEvents(): void {
-    this.events = this.session.events.map((event) => ({
-      event: { label: eventLabel(event), color: isHarm(event) ? HARM : undefined },
+    this.events = withWords(this.session.events).map((event) => ({
+      event: { label: event.label, color: saysHarm(event) ? HARM : undefined },
       x: this.byDepth ? event.depth_mm : event.time_s,
       y: event.force_N,
     }));

@@ -13,11 +13,14 @@ export class Cover {
   private readonly text = element('p');
   private readonly cure = element('p', 'cure');
   private readonly bar = element('progress');
+  private readonly work = element('details');
+  private readonly stage = element('p');
   private timer = 0;
   private refusal = '';  // the server's reason for refusing the connection
 
   constructor(private readonly root: HTMLElement, private readonly session: Session) {
-    this.card.append(this.title, this.bar, this.text, this.cure);
+    this.work.append(element('summary', '', 'What is being done'), this.stage);
+    this.card.append(this.title, this.bar, this.text, this.cure, this.work);
     this.card.setAttribute('role', 'status');
     root.append(this.card);
     this.bar.max = 1;
@@ -49,8 +52,8 @@ export class Cover {
       this.show('This case could not be loaded', status.message ?? '', status.cure ?? '', false);
     } else if (status?.state === 'loading' || !scene) {
       const fraction = status?.fraction;
-      this.show('Preparing the patient', sentence(status?.stage ?? 'waiting for the server'), '', true,
-                typeof fraction === 'number' ? fraction : null);
+      this.show('Preparing the patient', status?.stage ? 'The tissue is being modelled. The first time, this may take minutes.' : 'Waiting for the server…', '', true,
+                typeof fraction === 'number' ? fraction : null, sentence(status?.stage ?? ''));
     } else {
       if (!this.root.hidden) performance.mark('needle ready');  // for measuring how long the page takes to open
       this.root.hidden = true;
@@ -67,8 +70,10 @@ export class Cover {
     }
   }
 
-  private show(title: string, text: string, cure: string, busy: boolean, fraction: number | null = null): void {
+  private show(title: string, text: string, cure: string, busy: boolean, fraction: number | null = null, stage = ''): void {
     this.root.hidden = false;
+    this.work.hidden = stage === '';
+    if (this.stage.textContent !== stage) this.stage.textContent = stage;
     this.title.textContent = title;
     this.text.textContent = text;
     this.cure.textContent = cure;

@@ -47,7 +47,7 @@ export function makeHelp(session: Session): () => void {
   const reading = element('div', 'reading');
   for (const text of [
     'To push the needle, drag the blue handle at the bottom, turn the wheel over the 3D view, or hold ↑.',
-    'Solid outlines show the organs displaced by the needle, dashed outlines show the organs at rest. A cross marks the planned position of the tip, a ring the tissue point that the tip has reached. Both are drawn in the patient at rest, and the distance between them is the tip error. Over a section, the wheel moves its plane and a drag moves the plane of the other section.',
+    'Solid outlines show the organs displaced by the needle, dashed outlines show the organs at rest. A cross marks the planned position of the tip, a ring the tissue point that the tip has reached. Both are drawn in the patient at rest, and the distance between them is how far the tip is off its target. Over a section, the wheel moves its plane and a drag moves the plane of the other section.',
     'In the transverse section the patient’s right is at the left of the picture. In the sagittal section superior (the base of the gland) is at the left, as in the picture of a transrectal probe.',
     'In a case with a plan of seeds, go to the depth of the next seed and drop it with D; a preloaded needle goes to its full depth, D holds its train, and the seeds are left as you draw back. Pale seeds are planned, orange seeds have been dropped and move with the tissue. Lines in the sections show where the dropped seeds give 50, 100 and 150 % of the prescribed dose; they move with the seeds by their mean motion.',
     'With a gamepad, the left stick or the triggers push the needle, the right stick tilts it, and the shoulder buttons turn the bevel.',

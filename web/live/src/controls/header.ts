@@ -57,7 +57,7 @@ export class Header {
     if (scene && status?.state === 'ready') this.cases.selectedIndex = scene.case;
     const problem = status?.device_problem ? ` (${status.device_problem})` : '';
     const follows = this.session.guest && `The needle follows ${this.session.guest}${problem}`;
-    const viewers = others === 0 ? '' : others === 1 ? ' · 1 other viewer' : ` · ${others} other viewers`;
+    const viewers = others === 0 ? '' : others === 1 ? ', 1 other viewer' : `, ${others} other viewers`;
     let text = '';
     if (!connected || status?.state !== 'ready') text = '';
     else if (holds && asking > 0) text = asking === 1 ? 'Another viewer asks for the needle' : `${asking} viewers ask for the needle`;

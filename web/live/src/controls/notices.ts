@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Notices: why something was not done, and what to do instead. They disappear after some seconds.
 import { button, element } from '../../../shared/dom';
-import { eventLabel, harmSentence, isHarm } from '../event_names';
+import { harmSentence, isHarm } from '../event_names';
 import type { Session } from '../session';
 
 const SHOWN_MS = 9000;
@@ -15,7 +15,7 @@ export function speakEvents(root: HTMLElement, session: Session): void {
   session.on('event', (event) => {
     if (!session.frame || session.frame.replayed) return;
     if (isHarm(event)) spoken.textContent = harmSentence(event);
-    else spoken.textContent = `${eventLabel(event)}, ${event.depth_mm.toFixed(0)} mm, ${event.force_N.toFixed(1)} N`;
+    else if (event.label !== '') spoken.textContent = `${event.label}, ${event.depth_mm.toFixed(0)} mm, ${event.force_N.toFixed(1)} N`;
   });
 }
 

@@ -5,13 +5,13 @@ import { circle, strokeLine } from '../../../shared/canvas';
 import { ACCENT, HARM, INK, SEED, SOFT } from '../palette';
 import { element } from '../../../shared/dom';
 import { CanvasBox } from '../canvas_box';
-import { eventLabel, isHarm } from '../event_names';
+import { saysHarm, withWords } from '../event_names';
 import { clamp, type HandControl } from '../hand';
 import { currentNeedle, droppedOf, isBeforeTrain, seedDepths } from '../implant/implant';
 import type { Session } from '../session';
 import { wheelNotches } from '../wheel';
 
-const MARKED = new Set(['skin_contact', 'puncture']);
+const MARKED = 'puncture';  // the first contact is at the skin, which has its mark on the scale
 
 export class PushBar {
   private readonly track = element('div', 'track');
@@ -158,10 +158,10 @@ export class PushBar {
     const seeds = seedDepths(this.session.plan, this.session.implant);
     if (seeds) this.drawSeeds(seeds, middle, text);
     else if (planned !== undefined) this.flag(planned, middle, 'planned depth', SOFT, text);
-    for (const event of this.session.events) {
-      if (event.depth_mm > high) continue;
-      if (isHarm(event)) this.flag(event.depth_mm, middle, eventLabel(event), HARM, text);
-      else if (MARKED.has(event.kind)) this.flag(event.depth_mm, middle, eventLabel(event), INK, text);
+    const events = withWords(this.session.events).filter((event) => event.depth_mm <= high);
+    for (const event of events) if (saysHarm(event)) this.flag(event.depth_mm, middle, event.label, HARM, text);  // first, for room
+    for (const event of events) {
+      if (event.kind === MARKED && !saysHarm(event)) this.flag(event.depth_mm, middle, event.label, INK, text);
     }
     bar(low, frame.depth, steering ? ACCENT : SOFT, 0.34 * text);
     const target = this.hand.target.depth;

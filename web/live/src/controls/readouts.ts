@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Current values: depth, speed, tip, forces, and whether steps are in time; and the key figures of the insertion.
+// Current values: depth, speed, tip, forces; the key figures of the insertion; and, folded, the work of the computer.
 import { element } from '../../../shared/dom';
 import { CURVES } from '../../../shared/plot_style';
 import { onRepaintEvery } from '../../../shared/repaint';
 import type { Session } from '../session';
 import { SAMPLE_WORDS, TIP_STATES, type Frame } from '../wire';
+import { ComputerDetails, computerFacts } from './computer_details';
 import { KeyFigures } from './key_figures';
 
 const WRITE_EVERY_MS = 100;
 
 class Value {
   readonly row = element('div', 'value');
-  private readonly text = element('b');
+  private readonly text = element('b', '', '–');
   private readonly unit: HTMLElement;
 
   constructor(label: string, unit: string, color = '') {
@@ -33,19 +34,17 @@ export class Readouts {
   private readonly tip = new Value('Tip', '');
   private readonly forces = CURVES.map((c) => new Value(c.label, 'N', c.color));
   private readonly warning = element('p', 'warning');
-  private readonly step = new Value('Step', 'µs');
-  private readonly deadline = element('p', 'deadline');
+  private readonly computer = new ComputerDetails();
 
   constructor(root: HTMLElement, private readonly session: Session) {
     this.depth.row.classList.add('large');
     this.depth.row.title = 'Depth beyond the skin at which the tip of a straight needle on the same base would be';
     this.forces[0].row.classList.add('large');
-    this.step.row.title = 'Processor time of a step: median, 99th percentile, maximum';
     this.warning.hidden = true;
     const figures = element('div', 'figures');
     new KeyFigures(figures, session);
     root.append(this.depth.row, this.forces[0].row, this.forces[1].row, this.forces[2].row, this.speed.row, this.tip.row,
-                figures, this.warning, this.step.row, this.deadline);
+                figures, this.warning, this.computer.box);
     const write = onRepaintEvery(WRITE_EVERY_MS, () => this.write());
     for (const topic of ['frame', 'status', 'link'] as const) session.on(topic, write);
   }
@@ -62,14 +61,7 @@ export class Readouts {
                 : frame.approximate && TIP_STATES[frame.tipState] === 'in air' ? 'No force yet: the tissue here is not ready. Wait at the skin, or draw the needle out.'
                 : frame.approximate ? 'Forces are approximate: the needle is in tissue that is not yet precomputed.' : '', !frame.trusted);
     }
-    const loop = status?.loop;
-    const missed = frame?.missed ?? loop?.missed ?? 0;
-    const steps = frame?.steps ?? loop?.steps ?? 0;
-    this.step.set(loop && loop.steps > 0 ? `${loop.p50_us.toFixed(0)} · ${loop.p99_us.toFixed(0)} · ${loop.max_us.toFixed(0)}` : '–');
-    const words = frame?.replayed ? 'A replay' : steps === 0 ? 'No steps yet' : missed === 0 ? 'Every step on time' : `${missed.toLocaleString('en')} of ${steps.toLocaleString('en')} steps late`;
-    this.deadline.className = `deadline ${steps === 0 || frame?.replayed ? '' : missed === 0 ? 'kept' : 'missed'}`;
-    if (this.deadline.textContent !== words) this.deadline.textContent = words;
-    this.deadline.title = loop?.rights ?? '';
+    this.computer.write(computerFacts(frame, status));
   }
 
   private warn(text: string, serious: boolean): void {

@@ -85,7 +85,7 @@ export class TemplateMap {
     const predicted = live?.predicted ?? 0;
     this.ask.hidden = !live?.map || predicted >= total;
     this.ask.textContent = live?.predicting ? 'Stop' : 'Predict shift';
-    this.ask.title = 'Simulates an insertion through each hole in the background, to predict the shift of the gland and the tip error';
+    this.ask.title = 'Simulates an insertion through each hole in the background, to predict the shift of the gland and how far the tip is off its target';
     this.ask.disabled = !this.session.steering;
     this.state.textContent = live?.why_not ? 'No map, because there is no gland.'
       : live?.predicting ? `Hole ${predicted + 1} of ${total} …`

@@ -140,7 +140,7 @@ export class ImagePanel {
       element('h3', '', 'Picture'),
       tone('Gain', 'dB', -30, 30, (value) => (ultrasound.tone.gain_dB = value), 0, 'Brightness of all echoes'),
       tone('Range', 'dB', 30, 90, (value) => (ultrasound.tone.range_dB = value), 60, 'From black to white: small ranges show more contrast'),
-      ...['TGC near', '·', '·', 'TGC far'].map((label, k) => tone(label, 'dB', -20, 20, (value) => (ultrasound.tone.tgc_dB[k] = value), 0, 'Time gain compensation: brightness by depth')),
+      ...['TGC near', 'TGC 2', 'TGC 3', 'TGC far'].map((label, k) => tone(label, 'dB', -20, 20, (value) => (ultrasound.tone.tgc_dB[k] = value), 0, 'Time gain compensation: brightness by depth')),
       slider('ultrasound.depth_mm', 'Depth', 'mm', 40, 150, 5, 'Depth of the picture'),
       slider('ultrasound.focus_mm', 'Focus', 'mm', 10, 100, 5, 'Depth of the focus'),
       row(this.freeze, template), row(truth), this.pointer);

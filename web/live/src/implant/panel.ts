@@ -61,7 +61,7 @@ export class ImplantPanel {
   private readonly d90 = new PlanFigure('D90 now');
   private readonly v100 = new PlanFigure('V100 now');
   private readonly count = new PlanFigure('Seeds');
-  private readonly error = new PlanFigure('Mean error');
+  private readonly error = new PlanFigure('Mean seed error');
   private readonly todo = element('p', 'todo');
   private readonly list = element('div', 'needles');
   private readonly drop: HTMLButtonElement;
@@ -146,16 +146,17 @@ export class ImplantPanel {
     const some = (implant?.seeds.length ?? 0) > 0;
     const number = (value: number | null | undefined, digits: number) => (value == null || !some ? (some ? wait : '–') : value.toFixed(digits));
     const relative = (plan?.prescription_Gy ?? 0) > 0;
+    const none = !some ? '. Not known: no seed has been dropped yet' : '';
     const then = planned ? `; the plan reaches ${relative ? `${planned.d90_percent?.toFixed(0)} %` : `${planned.d90_Gy?.toFixed(0)} Gy`}` : '';
     this.d90.set(number(relative ? now?.d90_percent : now?.d90_Gy, relative ? 1 : 0), relative ? '%' : 'Gy',
-      `Dose that 90 % of the gland receives from the seeds dropped so far, in percent of ${plan?.prescription_Gy} Gy${then}${this.session.replaying ? '. It is as it was computed when this was recorded' : now ? `. Computed in ${now.took_ms.toFixed(0)} ms` : ''}`,
+      `Dose that 90 % of the gland receives from the seeds dropped so far, in percent of ${plan?.prescription_Gy} Gy${then}${this.session.replaying ? '. It is as it was computed when this was recorded' : now || none ? none : '. It is being computed'}`,
       relative && (now?.d90_percent ?? 0) >= 100);
     this.v100.set(number(now?.v100_percent, 1), '%',
-      `Share of the gland that receives the prescribed dose${planned?.v100_percent != null ? `; the plan reaches ${planned.v100_percent.toFixed(1)} %` : ''}`, (now?.v100_percent ?? 0) >= 95);
+      `Share of the gland that receives the prescribed dose${planned?.v100_percent != null ? `; the plan reaches ${planned.v100_percent.toFixed(1)} %` : ''}${none}`, (now?.v100_percent ?? 0) >= 95);
     const lost = lostSeeds(implant);
     this.count.set(String(implant?.seeds.length ?? 0), `of ${implant?.planned_seeds ?? 0}${lost > 0 ? `, ${lost} lost` : ''}`,
       `Seeds dropped so far, and seeds of the plan${lost > 0 ? `; ${lost} of them ${lost === 1 ? 'has' : 'have'} left the patient` : ''}`);
-    this.error.set(some && error ? error.mean_mm.toFixed(1) : '–', 'mm', 'Mean distance of the dropped seeds from their planned places, in the tissue at rest');
+    this.error.set(some && error ? error.mean_mm.toFixed(1) : '–', 'mm', `Mean distance of the places at which the dropped seeds rest from their planned places, in the patient at rest${none}`);
   }
 
   private build(plan: Plan): void {

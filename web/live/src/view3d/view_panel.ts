@@ -206,7 +206,7 @@ export class ViewPanel {
     });
     const contacts = visibilityBox(stage, stage.contacts, 'Contact points');
     const ghost = visibilityBox(stage, stage.ghost, 'Gland before the insertion');
-    const tipError = visibilityBox(stage, stage.tipError, 'Tip error, drawn in the patient at rest');
+    const tipError = visibilityBox(stage, stage.tipError, 'Tip off its target, drawn in the patient at rest');
     this.cutControl = new CutControl(stage);
     const body = element('div', 'settings-body');
     body.append(element('h3', '', 'Colours'), colors, element('h3', '', 'Cut open'), this.cutControl.element,
