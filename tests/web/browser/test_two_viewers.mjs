@@ -26,7 +26,7 @@ test('the second watches', async () => {
   await untilReadout(first.page, 'Depth', (depth) => depth === 12);
   await untilReadout(second.page, 'Depth', (depth) => depth === 12);
   await until('the same force', async () => (await readout(second.page, 'Axial')) - (await readout(first.page, 'Axial')), (difference) => difference === 0);
-  assert.ok((await heard()).some((text) => text.startsWith('Skin touched')));
+  assert.ok((await heard()).some((text) => text.startsWith('Touched the skin')));
 });
 
 test('who watches cannot push', async () => {
