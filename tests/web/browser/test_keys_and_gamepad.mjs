@@ -50,7 +50,7 @@ test('arrow keys push and pull as long as they are held', async () => {
   await page.waitForTimeout(500);
   const back = depths.reduce((most, depth, i) => Math.max(most, i > 0 ? depths[i - 1] - depth : 0), 0);
   assert.equal(back, 0, `the base was drawn back by ${back} mm`);
-  assert.deepEqual((await heard()).filter((text) => text.startsWith('Retraction')), []);
+  assert.deepEqual((await heard()).filter((text) => text.startsWith('Drawn back')), []);
   await page.keyboard.down('s');
   await untilReadout(page, 'Depth', (depth) => depth < last - 3);
   await page.keyboard.up('s');
