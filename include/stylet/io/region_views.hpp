@@ -23,6 +23,7 @@ struct RegionView {
   Colour colour{};     ///< from the palette of Okabe & Ito, which colour-blind readers can tell apart
   double opacity = 1;  ///< in the 3D views
   bool target = false;
+  bool soft_layer = false;  ///< fat or muscle around organs: drawn faintly, so that the organs are seen
   bool background = false;  ///< tissue that surrounds the other regions: drawn faintly, with its outer faces only
   std::vector<std::array<Index, 3>> triangles;  ///< node numbers of its surface, normals outward
 };

@@ -51,7 +51,6 @@ double area(const TetMesh& mesh, const std::array<Index, 3>& face) {
 
 std::array<Index, 3> flipped(const std::array<Index, 3>& face) { return {face[0], face[2], face[1]}; }
 
-/// Whether a region is fat or muscle around organs, which pictures show faintly so that the organs are seen.
 bool is_soft_layer(const std::string& name) { return name.ends_with("_fat") || name == "levator"; }
 
 /// Areas of contact between regions.
@@ -131,7 +130,8 @@ std::vector<RegionView> region_views(const TetMesh& mesh, std::span<const int> t
     view.label = readable_name(view.name);
     view.target = std::find(targets.begin(), targets.end(), view.region) != targets.end();
     view.background = view.region == background;
-    view.opacity = view.background ? 0.10 : is_soft_layer(view.name) ? 0.14 : view.target ? 0.75 : 0.48;
+    view.soft_layer = is_soft_layer(view.name);
+    view.opacity = view.background ? 0.10 : view.soft_layer ? 0.14 : view.target ? 0.75 : 0.48;
     if (view.background) {
       view.colour = kFlesh;
       coloured[r] = true;

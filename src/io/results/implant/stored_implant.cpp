@@ -21,10 +21,10 @@ void demand_shape(bool fits, const std::string& what) {
 /// The digest of the values of a file in their order, each with its name.
 class Seal {
  public:
-  template <class T>
-  void add(const std::string& name, T& value) {
+  template <class... T>
+  void add(const std::string& name, T&... values) {
     detail::WireWriter wire;
-    wire(value);
+    wire(values...);
     digest_.add(name);
     digest_.add(wire.bytes);
   }
@@ -123,7 +123,8 @@ class ImplantFile {
   }
   void mesh(TetMesh& mesh) {
     writes_ ? h5::write_mesh(at_, mesh) : void(mesh = h5::read_mesh(at_));
-    seal_.add("mesh", mesh);
+    seal_.add("mesh", mesh.nodes, mesh.tets, mesh.tet_region, mesh.regions);
+    if (!mesh.surfaces.empty()) seal_.add("surfaces", mesh.surfaces);  // earlier versions have none
   }
   /// A group with the contents of an item.
   template <class Item>
@@ -256,7 +257,7 @@ std::string digest_of_version_2(ImplantRecord& r) {
     }
   };
   wire(r.version, r.scenario_name, r.scenario_text, r.source, r.prescription_Gy, r.needle_diameter_mm,
-       r.needle_length_mm, r.seed_length_mm, r.mesh);
+       r.needle_length_mm, r.seed_length_mm, r.mesh.nodes, r.mesh.tets, r.mesh.tet_region, r.mesh.regions);
   needles(r.needles);
   needles(r.stabilising);
   count(r.seeds.size());

@@ -11,8 +11,6 @@
 #include <vtkProperty.h>
 #include <vtkRenderer.h>
 
-#include <algorithm>
-
 namespace stylet::results {
 namespace {
 
@@ -57,6 +55,7 @@ Layers view_3d(const PictureInput& input, const Frame& frame) {
     const auto surface = moved(input.surfaces[r], input.run.mesh, frame.displacement);
     vtkActor* actor = add_surface(stage, with_normals(surface), view.colour, view.opacity);
     actor->GetProperty()->BackfaceCullingOn();  // as in the interactive view
+    if (view.soft_layer) continue;
     vtkNew<vtkPolyDataSilhouette> silhouette;
     silhouette->SetInputData(surface);
     silhouette->SetCamera(stage->GetActiveCamera());
@@ -64,7 +63,7 @@ Layers view_3d(const PictureInput& input, const Frame& frame) {
     silhouette->BorderEdgesOff();
     silhouette->Update();
     vtkActor* outline = add_lines(stage, silhouette->GetOutput(), lighter(view.colour, -0.35), 1.5);
-    outline->GetProperty()->SetOpacity(std::min(0.5, 2.5 * view.opacity));
+    outline->GetProperty()->SetOpacity(view.background ? 0.25 : 0.5);
   }
   if (frame.needle.size() >= 2) {
     vtkActor* needle = add_surface(stage, needle_tube(frame.needle, input.run.info.needle_diameter_mm), kSteel, 1.0);

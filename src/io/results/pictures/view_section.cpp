@@ -3,6 +3,8 @@
 #include "pictures/views.hpp"
 
 #include <vtkActor.h>
+#include <vtkAppendPolyData.h>
+#include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkContourFilter.h>
 #include <vtkContourTriangulator.h>
@@ -40,10 +42,12 @@ double layer_of(Drawn part, std::size_t region, std::size_t regions) {
   return kRegionLayers * below / static_cast<double>(regions);
 }
 
+/// A plane exactly through nodes would cut elements into slivers, and some of them twice; a small offset avoids that.
+Vec3 origin_of_cut(const Section& section) { return section.origin + 1.7e-4 * section.view.towards_viewer; }
+
 vtkSmartPointer<vtkPolyData> cut(vtkDataSet* data, const Section& section) {
   vtkNew<vtkPlane> plane;
-  // A plane exactly through nodes would cut elements into slivers, and some of them twice; a small offset avoids that.
-  const Vec3 origin = section.origin + 1.7e-4 * section.view.towards_viewer;
+  const Vec3 origin = origin_of_cut(section);
   plane->SetOrigin(origin.x(), origin.y(), origin.z());
   const Vec3& normal = section.view.towards_viewer;
   plane->SetNormal(normal.x(), normal.y(), normal.z());
@@ -145,17 +149,110 @@ void fill_elements(vtkRenderer* stage, const PictureInput& input, const Frame& f
   filled->GetMapper()->SetScalarModeToUseCellData();
 }
 
+/// A closed line in a section: places in the picture, and numbers of its points.
+struct Loop {
+  std::vector<Eigen::Vector2d> places;
+  std::vector<vtkIdType> points;
+
+  [[nodiscard]] double area() const {
+    double twice = 0.0;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const Eigen::Vector2d &a = places[k], &b = places[(k + 1) % places.size()];
+      twice += a.x() * b.y() - a.y() * b.x();
+    }
+    return 0.5 * twice;
+  }
+  /// Whether the loop goes round a point: a ray from it crosses the loop an odd number of times.
+  [[nodiscard]] bool contains(const Eigen::Vector2d& p) const {
+    bool inside = false;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const Eigen::Vector2d &a = places[k], &b = places[(k + 1) % places.size()];
+      if ((a.y() > p.y()) == (b.y() > p.y())) continue;
+      if (p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) inside = !inside;
+    }
+    return inside;
+  }
+};
+
+/// The loops that the segments of a section make.
+std::vector<Loop> loops_of(vtkPolyData* joined, const Section& section) {
+  std::vector<Loop> loops;
+  vtkIdType count = 0;
+  const vtkIdType* points = nullptr;
+  vtkCellArray* lines = joined->GetLines();
+  for (lines->InitTraversal(); lines->GetNextCell(count, points) != 0;) {
+    Loop loop;
+    loop.points.assign(points, points + count - 1);  // the last one is the first one again
+    for (const vtkIdType n : loop.points) {
+      const Vec3 x(joined->GetPoint(n));
+      loop.places.emplace_back(x.dot(section.view.right()), x.dot(section.view.up));
+    }
+    if (loop.points.size() >= 3) loops.push_back(std::move(loop));
+  }
+  return loops;
+}
+
+/// The filled areas within closed lines; an area within another one is a hole in it.
+vtkSmartPointer<vtkPolyData> areas_within(vtkPolyData* lines, const Section& section) {
+  vtkNew<vtkStripper> joined;
+  joined->SetInputData(lines);
+  joined->JoinContiguousSegmentsOn();
+  joined->SetMaximumLength(1'000'000);
+  joined->Update();
+  std::vector<Loop> loops = loops_of(joined->GetOutput(), section);
+  vtkNew<vtkCellArray> turned;
+  for (const Loop& loop : loops) {
+    // A hole runs the other way round.
+    const auto around = std::count_if(loops.begin(), loops.end(), [&](const Loop& other) {
+      return &other != &loop && other.contains(loop.places.front());
+    });
+    std::vector<vtkIdType> points = loop.points;
+    if ((loop.area() > 0.0) == (around % 2 == 1)) std::reverse(points.begin(), points.end());
+    points.push_back(points.front());
+    turned->InsertNextCell(static_cast<vtkIdType>(points.size()), points.data());
+  }
+  vtkNew<vtkPolyData> ordered;
+  ordered->SetPoints(joined->GetOutput()->GetPoints());
+  ordered->SetLines(turned);
+  for (const Loop& l : loops) fprintf(stderr, "loop %zu area %g\n", l.points.size(), l.area());
+  vtkNew<vtkContourTriangulator> areas;
+  areas->SetInputData(ordered);
+  areas->Update();
+  return areas->GetOutput();
+}
+
+/// The plane around the areas within closed lines, as far as a picture may show it.
+vtkSmartPointer<vtkPolyData> around(vtkPolyData* lines, const Section& section) {
+  constexpr double kFar_mm = 500.0;
+  const Vec3 right = kFar_mm * section.view.right(), up = kFar_mm * section.view.up;
+  const Vec3 middle = origin_of_cut(section);
+  const std::array<Vec3, 5> frame{middle - right - up, middle + right - up, middle + right + up, middle - right + up,
+                                  middle - right - up};
+  vtkNew<vtkAppendPolyData> all;
+  all->AddInputData(lines);
+  all->AddInputData(polyline(frame));
+  all->Update();
+  return areas_within(all->GetOutput(), section);
+}
+
 /// Fills the outlines of the regions' surfaces, those that come first on top.
 void fill_outlines(vtkRenderer* stage, const PictureInput& input, const Frame& frame, const Section& section) {
   for (std::size_t r = 0; r < input.regions.size(); ++r) {
-    vtkNew<vtkStripper> lines;
-    lines->SetInputData(cut(moved(input.surfaces[r], input.run.mesh, frame.displacement), section));
-    lines->JoinContiguousSegmentsOn();
-    vtkNew<vtkContourTriangulator> areas;
-    areas->SetInputConnection(lines->GetOutputPort());
-    areas->Update();
-    lift(add_flat(stage, areas->GetOutput(), fill_of(input.regions[r])), section,
-         layer_of(Drawn::fill, r, input.regions.size()));
+    const auto areas =
+        areas_within(cut(moved(input.surfaces[r], input.run.mesh, frame.displacement), section), section);
+    lift(add_flat(stage, areas, fill_of(input.regions[r])), section, layer_of(Drawn::fill, r, input.regions.size()));
+  }
+}
+
+/// Gives a map of the elements the outline of the body's surface: what lies beyond it is covered, and gaps before it
+/// get a colour.
+void trim_to_body(vtkRenderer* stage, const PictureInput& input, const Frame& frame, const Section& section,
+                  const Colour& gaps) {
+  for (std::size_t r = 0; r < input.regions.size(); ++r) {
+    if (!input.regions[r].background) continue;
+    const auto outline = cut(moved(input.surfaces[r], input.run.mesh, frame.displacement), section);
+    lift(add_flat(stage, areas_within(outline, section), gaps), section, -kInitialLayer);
+    lift(add_flat(stage, around(outline, section), kWhite), section, 1.5 * kInitialLayer);
   }
 }
 
@@ -251,7 +348,13 @@ Layers view_displacement(const PictureInput& input, const Frame& frame, const Se
   thin->GetProperty()->SetOpacity(0.45);
   lift(thin, section, kInitialLayer);
 
+  if (!mesh.surfaces.empty()) {
+    Colour none{};
+    colours->GetColor(0.0, none.data());
+    trim_to_body(stage, input, frame, section, none);
+  }
   for (std::size_t r = 0; r < input.regions.size(); ++r) {
+    if (input.regions[r].soft_layer) continue;
     const auto outline = cut(moved(input.surfaces[r], mesh, frame.displacement), section);
     lift(add_lines(stage, outline, kWhite, input.regions[r].target ? 3.5 : 2.0), section, kOutlineLayer);
   }
