@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "region_surfaces.hpp"
 
+#include "simplify_surface.hpp"
 #include "stylet/core/parallel.hpp"
 
 #include <vtkCellArray.h>
@@ -21,14 +22,15 @@ namespace {
 constexpr double kFine_mm = 1.4;    ///< spacing of the samples of an organ's distances …
 constexpr double kFinest_mm = 0.7;  ///< … and of a thin one
 constexpr double kOfRadius = 0.25;  ///< spacing over half the thickness of a thin organ
-constexpr double kCoarse_mm = 2.2;  ///< of tissue around organs, whose surfaces are large
+constexpr double kCoarse_mm = 2.8;  ///< of tissue around organs, whose surfaces are large
+constexpr double kLongest = 3.0;    ///< longest edge that simplification removes, over the spacing
 /// Smallest distance of a sample from the surface, over the spacing. It keeps triangles from becoming points, and moves
 /// the surface by no more than this.
 constexpr double kNearest = 0.04;
 constexpr double kSmallest_mm3 = 20.0;  ///< smaller pieces are crumbs between surfaces that nearly touch
 
-double spacing_of(const Structure& s) {
-  if (s.generated || s.name == "body") return kCoarse_mm;
+double spacing_of(const Structure& s, const Layer& layer) {
+  if (layer.clipped || s.name == "body") return kCoarse_mm;
   return std::clamp(kOfRadius * s.shape->inner_radius(), kFinest_mm, kFine_mm);
 }
 
@@ -46,23 +48,22 @@ Samples sample(const Anatomy& a, int structure) {
   Eigen::AlignedBox3d box = layer.box;
   if (layer.clipped) box = box.intersection(a.layers.back().box);
   Samples out;
-  out.spacing = spacing_of(s);
+  out.spacing = spacing_of(s, layer);
   out.low = box.min() - Vec3::Constant(out.spacing);
   for (int k = 0; k < 3; ++k) out.size[k] = static_cast<int>(std::ceil(box.sizes()[k] / out.spacing)) + 3;
   out.values.resize(static_cast<std::size_t>(out.size[0]) * out.size[1] * out.size[2]);
   const double least = kNearest * out.spacing;
-  for_each_in_parallel(static_cast<std::size_t>(out.size[2]), [&](std::size_t k) {
-    float* value = out.values.data() + k * out.size[1] * out.size[0];
+  float* value = out.values.data();
+  for (int k = 0; k < out.size[2]; ++k) {
     for (int j = 0; j < out.size[1]; ++j) {
       for (int i = 0; i < out.size[0]; ++i, ++value) {
-        const bool at_rim = i == 0 || j == 0 || k == 0 || i + 1 == out.size[0] || j + 1 == out.size[1] ||
-                            static_cast<int>(k) + 1 == out.size[2];
-        const double d =
-            at_rim ? out.spacing : a.distance_to(structure, out.low + out.spacing * Vec3(i, j, static_cast<double>(k)));
+        const bool at_rim =
+            i == 0 || j == 0 || k == 0 || i + 1 == out.size[0] || j + 1 == out.size[1] || k + 1 == out.size[2];
+        const double d = at_rim ? out.spacing : a.distance_to(structure, out.low + out.spacing * Vec3(i, j, k));
         *value = static_cast<float>(d < 0.0 ? std::max(-d, least) : std::min(-d, -least));
       }
     }
-  });
+  }
   return out;
 }
 
@@ -151,13 +152,16 @@ Surface without_crumbs(const Surface& surface) {
 
 std::vector<Surface> region_surfaces(const Anatomy& anatomy, std::span<const std::string> regions,
                                      const Progress& progress) {
-  std::vector<Surface> surfaces;
-  for (const std::string& region : regions) {
-    report(progress, "surfaces", static_cast<double>(surfaces.size()) / static_cast<double>(regions.size()));
-    const auto structure = static_cast<int>(anatomy.find(region) - anatomy.structures.data());
-    surfaces.push_back(without_crumbs(contour(sample(anatomy, structure), region)));
-  }
-  report(progress, "surfaces", 1.0);
+  std::vector<Surface> surfaces(regions.size());
+  for_each_in_parallel(
+      regions.size(),
+      [&](std::size_t r) {
+        const auto structure = static_cast<int>(anatomy.find(regions[r]) - anatomy.structures.data());
+        const Samples samples = sample(anatomy, structure);
+        surfaces[r] = without_crumbs(contour(samples, regions[r]));
+        simplify(surfaces[r], kLongest * samples.spacing);
+      },
+      progress, "surfaces");
   return surfaces;
 }
 

@@ -224,7 +224,7 @@ void kill_an_implant(int times, std::uint_fast32_t start) {
     if (::testing::Test::HasFailure()) FAIL() << "after kill " << k;
   }
   EXPECT_GT(compared, times / 2);
-  EXPECT_GT(compared_doses, times / 4);
+  EXPECT_GT(compared_doses, times / 5);  // on a busy machine few are computed when the server is killed
 }
 
 }  // namespace

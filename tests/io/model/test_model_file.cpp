@@ -4,6 +4,7 @@
 #include "io/formats/files.hpp"
 
 #include "h5_new_file.hpp"
+#include "model/model_format.hpp"
 #include "model/sealed_file.hpp"
 #include "stylet/io/model_file.hpp"
 #include "stylet/sim/simulation.hpp"
@@ -323,9 +324,11 @@ TEST(SavedModel, other_files_and_versions_are_named) {
   EXPECT_TRUE(is_model_file(folder / "box.stylet"));
   const detail::SealedFile sealed(folder / "box.stylet", {});
   test::write_file(folder / "newer.stylet", test::content_of(folder / "box.stylet").substr(0, sealed.size()));
+  const auto version = [](int number) { return "\"format_version\": " + std::to_string(number); };
+  constexpr int kNewer = detail::kModelFileVersion + 1;
   detail::SealedFile::seal(folder / "newer.stylet",
-                           test::replaced(sealed.index(), "\"format_version\": 3", "\"format_version\": 4"));
-  EXPECT_SAYS(refusal(folder / "newer.stylet"), "version 4 of the format");
+                           test::replaced(sealed.index(), version(kNewer - 1), version(kNewer)));
+  EXPECT_SAYS(refusal(folder / "newer.stylet"), "version " + std::to_string(kNewer) + " of the format");
 }
 
 TEST(SavedModel, a_damaged_one_is_known_by_its_name) {
